@@ -9,7 +9,7 @@ namespace kinalign {
 
 namespace {
 
-// In the order of the enum.
+// The names in the order of Transport.
 constexpr std::array<std::string_view, 3> transport_table{"udp", "tcp", "tcp-listen"};
 
 constexpr std::array udp_only{Transport::udp};
@@ -60,8 +60,8 @@ constexpr std::array<ProtocolRow, 5> table{{
      .is_named_by_address = true},
 }};
 
-// A row in the wrong place would give its protocol the properties of another one, so the compiler
-// checks the order.
+// A row at the wrong position would give a protocol the properties of another protocol, so the
+// compiler checks the order.
 constexpr bool is_in_order() {
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (static_cast<std::size_t>(table[i].protocol) != i) return false;

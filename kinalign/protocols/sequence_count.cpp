@@ -5,11 +5,11 @@ namespace kinalign {
 
 namespace {
 
-// Chosen: an hour at 100 Hz. A number further ahead means that the sender restarted.
+// A chosen limit: an hour at 100 Hz. If a number is further ahead, the sender has restarted.
 constexpr std::int64_t longest_loss = 360'000;
-// Chosen: no network was seen that repeats or delays more than 16 packets in a row.
+// A chosen limit: no observed network duplicates or delays more than 16 packets in a row.
 constexpr std::uint64_t restart_run = 16;
-// Chosen: the first packet to arrive was delayed behind at most this many.
+// A chosen limit: at most this many older packets arrive after the first packet.
 constexpr std::int64_t near_first = 8;
 
 }  // namespace
@@ -20,8 +20,8 @@ SequenceCounts SequenceCount::counts() const {
   return counts;
 }
 
-// The first block undoes a leap: the packet after it continues the old count, so the leap was a
-// single outlier number, not a restart.
+// The first block undoes a leap (a number 1024 or more away). If the packet after a leap continues
+// the old count, the leap was a single outlier number and not a restart.
 Order SequenceCount::push(std::uint64_t sent, bool may_restart) {
   if (leapt_ && is_near(before_, sent) && !is_near(now_, sent)) {
     now_ = before_;
@@ -34,8 +34,8 @@ Order SequenceCount::push(std::uint64_t sent, bool may_restart) {
   const std::int64_t number = now_.numbers.unwrap(sent, bits_);
   if (!is_near(now_, sent)) return leap(number, may_restart);
   const Counter::Place place = now_.numbers.place_of(number);
-  // A number below the first one is new only if it is close to it. The count then begins at this
-  // number, and the numbers between the two are missing.
+  // A number below the first one is accepted only if it is close to the first one. The count then
+  // begins at this number, and the numbers in between are missing.
   const bool is_new = place == Counter::Place::ahead ||
                       (place == Counter::Place::late &&
                        Counter::difference(now_.numbers.first(), number) <= near_first);
@@ -58,7 +58,7 @@ void SequenceCount::take(std::int64_t number) {
   now_.old_run = 0;
 }
 
-// Begins a new count after a restart.
+// Begins a new count after a restart of the sender.
 void SequenceCount::begin(std::int64_t number) {
   now_.counts.lost += now_.numbers.missing();
   now_.numbers = {};
@@ -67,9 +67,9 @@ void SequenceCount::begin(std::int64_t number) {
   take(now_.numbers.unwrap(static_cast<std::uint64_t>(number), bits_));
 }
 
-// Judges a number 1024 or more away. The old state is kept in `before_` until the next packet,
-// which decides whether the leap is real. It does not count this packet: `push` adds it again if
-// the leap is undone.
+// Handles a number 1024 or more away. `before_` keeps the old state until the next packet, which
+// shows whether the leap is real. The old state does not count this packet. If the leap is undone,
+// `push` adds it again.
 Order SequenceCount::leap(std::int64_t number, bool may_restart) {
   const std::int64_t steps = now_.numbers.steps_to(number);
   if (!may_restart && steps < 0) return old_number(number, may_restart);
@@ -88,10 +88,10 @@ Order SequenceCount::leap(std::int64_t number, bool may_restart) {
   return Order::restart;
 }
 
-// Handles a number that was not missing: it arrived before, or lies well below the first one.
+// Handles a number that was not missing: it arrived before, or is far below the first number.
 Order SequenceCount::old_number(std::int64_t number, bool may_restart) {
-  // A sender that restarts close behind its old number looks like a run of duplicates that rise by
-  // one. After `restart_run` of them the count begins again.
+  // If a sender restarts less than 1024 numbers back, its packets look like a run of duplicates
+  // that rise by one. After `restart_run` such packets the count begins again.
   const bool rises = may_restart && Counter::difference(number, now_.previous) == 1;
   now_.old_run = rises ? now_.old_run + 1 : 1;
   now_.previous = number;

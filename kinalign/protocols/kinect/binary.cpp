@@ -13,8 +13,8 @@ namespace {
 
 using Refusal = KinectRefusal;
 
-// Numbers in the head: docs/formats/kinect_stream.md. A bit that version 1 does not use must be 0,
-// so that a later version can give it a meaning.
+// The numbers in a message's head: docs/formats/kinect_stream.md. A bit that version 1 does not use
+// must be 0, so that a later version can give it a meaning.
 constexpr std::uint8_t version = 1, kinect_v2 = 1;
 constexpr std::uint8_t hello_type = 1, frame_type = 2, ping_type = 3, pong_type = 4;
 constexpr std::uint8_t utc_flag = 1, floor_flag = 2, orientations_flag = 4, hands_flag = 8,
@@ -29,7 +29,7 @@ struct Head {
 
 // ---- reading
 
-// The caller has checked magic, version and length, so these are skipped.
+// Magic, version and length were checked by the caller, so they are skipped here.
 Head take_head(LittleEndianReader& reader) {
   Head head;
   reader.take_bytes(kinect_magic.size() + 1);  // the magic and the version
@@ -45,13 +45,13 @@ Head take_head(LittleEndianReader& reader) {
   return head;
 }
 
-// A length of one byte, then the text without an end.
+// Reads a text: its length in one byte, then its characters without a zero at the end.
 std::string take_short_text(LittleEndianReader& reader) {
   const auto bytes = reader.take_bytes(reader.take<std::uint8_t>());
   return {bytes.begin(), bytes.end()};
 }
 
-/// The take_ functions decode the fields of one type of message. They refuse flags and fields that
+/// Each take_ function decodes the fields of one type of message. It refuses flags and fields that
 /// the type does not use.
 Refusal take_hello(const Head& head, LittleEndianReader& reader, KinectMessage& message) {
   if (head.flags != 0 || head.bodies != 0 || head.part != 0) return Refusal::reserved_bits;
@@ -77,7 +77,7 @@ KinectBody take_body(LittleEndianReader& reader, bool has_orientations) {
   return body;
 }
 
-/// Decodes a frame. Fields that the flags declare absent must be zero.
+/// Decodes a frame. If a flag says that a field is absent, the field must be zero.
 Refusal take_frame(const Head& head, LittleEndianReader& reader, KinectMessage& message) {
   if (head.flags > 31) return Refusal::reserved_bits;
   if (head.bodies > most_kinect_bodies) return Refusal::wrong_fields;
@@ -103,8 +103,8 @@ Refusal take_frame(const Head& head, LittleEndianReader& reader, KinectMessage& 
                          [](float x) { return std::bit_cast<std::uint32_t>(x) != 0; })) {
     return Refusal::reserved_bits;
   }
-  // The loop ends early if the message is shorter than its bodies; the caller then refuses it by
-  // its length.
+  // If the message is too short for its bodies, the loop ends early. The caller then refuses the
+  // message because of its length.
   for (std::uint8_t i = 0; i < head.bodies && reader.complete(); ++i) {
     frame.bodies.push_back(take_body(reader, frame.has_orientations));
   }
@@ -112,7 +112,7 @@ Refusal take_frame(const Head& head, LittleEndianReader& reader, KinectMessage& 
   return Refusal::none;
 }
 
-/// Decodes a ping. Without the echo flag the echo's fields must be zero.
+/// Decodes a ping. Without the echo flag, the fields of the echo must be zero.
 Refusal take_ping(const Head& head, LittleEndianReader& reader, KinectMessage& message) {
   if (head.flags > echo_flag || head.joint_set != 0 || head.bodies != 0 || head.part != 0) {
     return Refusal::reserved_bits;
@@ -131,7 +131,7 @@ Refusal take_ping(const Head& head, LittleEndianReader& reader, KinectMessage& m
   return Refusal::none;
 }
 
-// The host only sends pongs. They are decoded for tests and for the sender of the rehearsal.
+// The host sends pongs and never receives them. Only tests and simulated senders decode them.
 Refusal take_pong(const Head& head, LittleEndianReader& reader, KinectMessage& message) {
   if (head.flags != 0 || head.joint_set != 0 || head.bodies != 0 || head.part != 0) {
     return Refusal::reserved_bits;
@@ -142,7 +142,7 @@ Refusal take_pong(const Head& head, LittleEndianReader& reader, KinectMessage& m
   return Refusal::none;
 }
 
-/// Decodes the fields of the head's type; only hellos and frames have a joint set.
+/// Decodes the fields of a message by its type. Only hellos and frames have a joint set.
 Refusal take_fields(const Head& head, LittleEndianReader& reader, KinectMessage& message) {
   const bool has_joints = head.type == hello_type || head.type == frame_type;
   if (has_joints && head.joint_set != kinect_v2) return Refusal::unknown_joint_set;
@@ -181,7 +181,7 @@ void put_head(std::vector<std::uint8_t>& out, const Head& head) {
   for (const std::uint8_t byte : kinect_magic) append_little(byte, out);
   append_little(version, out);
   append_little(head.type, out);
-  append_little(std::uint16_t{0}, out);  // the length, which is known later
+  append_little(std::uint16_t{0}, out);  // the length, which is filled in later
   append_little(head.origin.sensor, out);
   append_little(head.origin.session, out);
   append_little(head.origin.sequence, out);
@@ -212,7 +212,7 @@ void put_body(std::vector<std::uint8_t>& out, const KinectBody& body, bool has_o
   if (has_orientations) put_floats(out, body.orientations);
 }
 
-// The flags state which optional fields hold values. Absent fields are written as zeros.
+// The flags say which optional fields have values. Absent fields are written as zeros.
 std::uint8_t flags_of(const KinectFrame& frame) {
   return static_cast<std::uint8_t>((frame.utc_us ? utc_flag : 0) | (frame.floor ? floor_flag : 0) |
                                    (frame.has_orientations ? orientations_flag : 0) |
@@ -220,7 +220,7 @@ std::uint8_t flags_of(const KinectFrame& frame) {
                                    (frame.more_parts ? more_parts_flag : 0));
 }
 
-/// Encodes the message of each type, without the CRC.
+/// Encodes each type of message, without the CRC.
 struct Put {
   std::vector<std::uint8_t>& out;
 
@@ -261,19 +261,19 @@ std::size_t stated_kinect_length(std::span<const std::uint8_t> head) {
   return head[6] | static_cast<std::size_t>(head[7]) << 8;
 }
 
-// Used on connections, before the whole message has arrived. An impossible head shows that the
-// magic stood in other data, so the search continues at once instead of waiting for up to 4498
-// bytes.
+// On a connection this check runs before the whole message has arrived. An impossible head means
+// that the magic was part of other data. The search for the next message then continues at once,
+// instead of waiting for up to 4498 bytes.
 KinectRefusal check_kinect_head(std::span<const std::uint8_t> head) {
   if (head[4] != version) return Refusal::unknown_version;
   const std::size_t length = stated_kinect_length(head);
-  // Wraps if the length is too small; no type then fits.
+  // If the length is too small, the difference wraps to a size that fits no type.
   const std::size_t fields = length - kinect_head_size;
   if (length > most_kinect_bytes) return Refusal::too_long;
   const std::uint8_t type = head[5], bodies = head[22];
   const bool oriented = (head[20] & orientations_flag) != 0;
-  // A hello has two texts of at most 64 bytes, each with its length. All other types have a fixed
-  // size for their flags and bodies.
+  // A hello has two texts of at most 64 bytes, each after its length. In all other types, flags and
+  // number of bodies determine the size.
   const bool fits = (type == hello_type && fields >= 2 + kinect_crc_size &&
                      fields <= 2 * (1 + 64) + kinect_crc_size) ||
                     (type == frame_type && length == kinect_frame_size(bodies, oriented)) ||
@@ -289,7 +289,7 @@ KinectRefusal decode_kinect_binary(std::span<const std::uint8_t> bytes, KinectMe
   LittleEndianReader reader(bytes.first(bytes.size() - kinect_crc_size));
   const Head head = take_head(reader);
   Refusal refusal = take_fields(head, reader, message);
-  // All bytes of the message must be used, no more and no fewer.
+  // The fields must use exactly all bytes of the message.
   if (refusal == Refusal::none && (!reader.complete() || reader.left() != 0)) {
     refusal = Refusal::wrong_length;
   }
@@ -302,7 +302,7 @@ std::vector<std::uint8_t> encode_kinect_binary(const KinectMessage& message) {
   assert(check(message) == Refusal::none);
   std::vector<std::uint8_t> out;
   std::visit(Put{out}, message);
-  // The length is written before the CRC is computed, because the CRC covers it.
+  // The length is written before the CRC is computed, because the CRC covers the length.
   const std::size_t length = out.size() + kinect_crc_size;
   out[6] = static_cast<std::uint8_t>(length & 0xff);
   out[7] = static_cast<std::uint8_t>(length >> 8);

@@ -13,7 +13,7 @@ constexpr std::size_t joints = kinect_joints.size();
 
 Duration duration_of(std::int64_t ticks) { return Duration{ticks * 100}; }
 
-/// Appends a body's joints; returns the number of joints that are not finite.
+/// Appends a body's joints. Returns the number of joints whose values are not finite.
 std::size_t append_body(const KinectBody& body, PointFrames& out) {
   std::size_t not_finite = 0;
   for (std::size_t j = 0; j < joints; ++j) {
@@ -30,14 +30,14 @@ std::size_t append_body(const KinectBody& body, PointFrames& out) {
   return not_finite;
 }
 
-// The sensor's ticks count from its start, so this stamp is no UTC. Alignment fits the sensor's
-// clock later.
+// Ticks count from the sensor's start, so this stamp is not UTC. The alignment later relates the
+// sensor's clock to the take's time.
 Time device_stamp(const KinectFrame& frame) { return Time{duration_of(frame.device_ticks)}; }
 
 }  // namespace
 
-// Numbers begin again with each session, so the counts of the ended session are added up and a new
-// count begins.
+// Numbers begin again in each session. The counts of the ended session are therefore added up, and
+// a new count begins.
 void KinectFrameJoiner::begin_session(std::uint32_t session) {
   counts_.frames += sequence_.counts();
   sequence_ = SequenceCount(32);
@@ -46,7 +46,8 @@ void KinectFrameJoiner::begin_session(std::uint32_t session) {
   ++counts_.sessions;
 }
 
-// The frame itself was joined on the other connection. Only its number and its ticks matter here.
+// The other connection's receiver joined the frame itself. Here only its number and its ticks
+// matter.
 void KinectFrameJoiner::follow(const KinectMoment& last) {
   begin_session(last.origin.session);
   sessions_.take(last);
@@ -54,8 +55,8 @@ void KinectFrameJoiner::follow(const KinectMoment& last) {
   sequence_.push(last.origin.sequence);
 }
 
-// A message of an ended session is dropped. A message of the newest one joins the open frame or
-// begins a new one. A frame is passed on as soon as all its parts are there.
+// A message of an ended session is dropped. A message of the newest session joins the open frame or
+// begins a new frame. A frame is passed on as soon as all its parts have arrived.
 void KinectFrameJoiner::take(KinectFrame message, std::vector<JoinedKinectFrame>& out,
                              std::string_view sender) {
   const KinectOrigin origin = message.origin;
@@ -72,18 +73,18 @@ void KinectFrameJoiner::take(KinectFrame message, std::vector<JoinedKinectFrame>
   } else {
     begin(std::move(message), out);
   }
-  // One bit for each part up to the last: (2 << last) - 1.
+  // The expected bits, one for each part up to the last: (2 << last) - 1.
   const bool whole = open_ && last_ && have_ == (2U << *last_) - 1;
   if (whole) close(out);
 }
 
-// If both ticks are older than those of the newest frame, the sender did not restart; its number is
-// then no restart either.
+// A restarted sender sends frames with newer ticks. If the ticks are not newer, a lower number
+// therefore does not mean a restart.
 bool KinectFrameJoiner::is_newer(const KinectFrame& message) const {
   return newest_ && has_newer_ticks(moment_of(message), *newest_);
 }
 
-/// Begins a new frame, unless its number shows that it is old or an outlier.
+/// Begins a new frame, unless the number shows that the frame is old or the number is an outlier.
 void KinectFrameJoiner::begin(KinectFrame message, std::vector<JoinedKinectFrame>& out) {
   const bool only = message.part == 0 && !message.more_parts;
   const Order order = sequence_.push(message.origin.sequence, is_newer(message));
@@ -95,7 +96,7 @@ void KinectFrameJoiner::begin(KinectFrame message, std::vector<JoinedKinectFrame
     ++counts_.stale;
     return;
   }
-  // A late frame is passed on, but the newest one stays the measure for ticks.
+  // A late frame is passed on, but newest_ stays: later frames are compared with the newest ticks.
   if (order != Order::late) newest_ = moment_of(message);
   close(out);
   have_ = 1U << message.part;
@@ -104,15 +105,16 @@ void KinectFrameJoiner::begin(KinectFrame message, std::vector<JoinedKinectFrame
   open_ = std::move(message);
 }
 
-/// Adds a part to the open frame, unless it is a duplicate or contradicts the other parts.
+/// Adds a part to the open frame. A duplicate, or a part that contradicts the other parts, is
+/// dropped.
 void KinectFrameJoiner::join(KinectFrame message) {
   KinectFrame& frame = *open_;
   if ((have_ >> message.part & 1U) != 0) {
     ++counts_.parts_doubled;
     return;
   }
-  // Parts of one frame have equal device ticks and at most six bodies together. The last part has
-  // the highest number of all.
+  // All parts of a frame have the same device ticks, and together at most six bodies. The last part
+  // has the highest number.
   const bool fits = message.device_ticks == frame.device_ticks &&
                     frame.bodies.size() + message.bodies.size() <= most_kinect_bodies &&
                     (message.more_parts || std::bit_width(have_) <= message.part) &&
@@ -123,14 +125,14 @@ void KinectFrameJoiner::join(KinectFrame message) {
   }
   have_ |= 1U << message.part;
   if (!message.more_parts) last_ = message.part;
-  // The time of sending is that of the first part, whichever part arrived first.
+  // The frame's time of sending is that of its first part, whichever part arrived first.
   frame.sent_ticks = std::min(frame.sent_ticks, message.sent_ticks);
   frame.has_hands |= message.has_hands;
   frame.has_orientations |= message.has_orientations;
   frame.bodies.insert(frame.bodies.end(), message.bodies.begin(), message.bodies.end());
 }
 
-// Passes the open frame on, whole or not.
+// Passes on the open frame, complete or not.
 void KinectFrameJoiner::close(std::vector<JoinedKinectFrame>& out) {
   if (!open_) return;
   const bool whole = last_ && have_ == (2U << *last_) - 1;
@@ -146,13 +148,12 @@ void KinectFrameJoiner::finish(std::vector<JoinedKinectFrame>& out) { close(out)
 KinectFrameCounts KinectFrameJoiner::counts() const {
   KinectFrameCounts counts = counts_;
   counts.frames += sequence_.counts();
-  // Each session after the first is a restart, which no count of numbers has seen.
+  // Each session after the first is a restart. The counts of a single session do not include it.
   if (counts.sessions > 1) counts.frames.restarts += counts.sessions - 1;
   return counts;
 }
 
-// An absent body has only missing joints: KinectBody{} has state 0 everywhere. So each frame gives
-// one row.
+// Each frame gives one row. For an absent body, KinectBody{} has state 0 (missing) at every joint.
 std::size_t append_kinect_row(const KinectFrame& frame, std::uint64_t body, PointFrames& out) {
   out.stamps.push_back(device_stamp(frame));
   const auto found = std::find_if(frame.bodies.begin(), frame.bodies.end(),
@@ -162,8 +163,9 @@ std::size_t append_kinect_row(const KinectFrame& frame, std::uint64_t body, Poin
 
 NodeTime kinect_sender_time(std::int64_t ticks) { return NodeTime{duration_of(ticks)}; }
 
-// NTP's names: T1 is the ping's sending, T2 its arrival `h_rx`, T3 the pong's departure `h_tx`, T4
-// the pong's arrival at the sender. The echo holds T3 and T4 of an earlier pong.
+// An exchange has four times, named as in NTP. T1: the sender sends the ping. T2 (`h_rx`): the ping
+// arrives. T3 (`h_tx`): the host sends the pong. T4: the pong arrives. The echo in a ping contains
+// T3 and T4 of an earlier pong.
 Exchange exchange_of(const KinectPing& ping, HostTime h_rx, std::optional<HostTime> h_tx) {
   Exchange exchange{ping.origin.session, kinect_sender_time(ping.sent_ticks), h_rx, std::nullopt};
   if (ping.echo && h_tx) {

@@ -19,11 +19,12 @@ using Refusal = KinectRefusal;
 
 constexpr std::string_view schema = "kinalign.kinect/1";
 
-// Each `take` returns false if the value is of another kind.
+// Each take() reads one type of value. It returns false if the JSON value has another type.
 
 bool take(const Json& json, std::int64_t& to) {
   if (!json.is_number_integer()) return false;
-  // The JSON library keeps numbers above the largest int64 as unsigned; converting them would wrap.
+  // The JSON library stores numbers above the largest int64 as unsigned. Their conversion would
+  // wrap.
   if (json.is_number_unsigned() && json.get<std::uint64_t>() > INT64_MAX) return false;
   to = json.get<std::int64_t>();
   return true;
@@ -51,7 +52,7 @@ bool take(const Json& json, std::string& to) {
 
 bool take(const Json& json, float& to) {
   constexpr double most = std::numeric_limits<float>::max();
-  // JSON has no NaN and no infinity, so a value that is not finite is sent as null.
+  // JSON has no NaN and no infinity. Senders write null for a value that is not finite.
   if (json.is_null()) to = std::numeric_limits<float>::quiet_NaN();
   if (json.is_null()) return true;
   if (!json.is_number()) return false;
@@ -70,7 +71,7 @@ bool take(const Json& json, std::array<T, n>& to) {
   return true;
 }
 
-/// Reads an array [25][width].
+/// Reads an array of 25 rows, one row per joint, into one flat array.
 template <std::size_t n>
 bool take_rows(const Json& json, std::array<float, n>& to) {
   constexpr std::size_t rows = kinect_joints.size(), width = n / rows;
@@ -99,15 +100,15 @@ bool take_if_any(const Json& object, const char* key, std::optional<T>& to) {
   return !object.contains(key) || take(object, key, to.emplace());
 }
 
-// Tracking ids are above 2^53, and many JSON readers store numbers as doubles. So an id is a text
-// of digits.
+// Tracking ids are above 2^53, and many JSON readers store numbers as doubles. An id is therefore
+// written as a text of digits.
 bool take_id(const Json& object, std::uint64_t& to) {
   std::string digits;
   return take(object, "id", digits) && parse_integer(digits, to);
 }
 
-/// Reads a body into the frame. All bodies must agree on having hands and orientations.
-/// Unknown keys are ignored, so a sender may add keys.
+/// Reads a body into the frame. All bodies of a frame must have hands, or none; the same is true
+/// for orientations. Unknown keys are ignored, so a sender may add keys.
 bool take_body(const Json& object, KinectFrame& frame) {
   KinectBody& body = frame.bodies.emplace_back();
   const bool whole = object.is_object() && take_id(object, body.id) &&
@@ -116,7 +117,8 @@ bool take_body(const Json& object, KinectFrame& frame) {
                      take_rows(object["positions"], body.positions);
   if (!whole) return false;
   const bool hands = object.contains("hands"), orientations = object.contains("orientations");
-  // The first body decides for the frame, because the frame has one flag for all its bodies.
+  // The first body decides for all bodies, because a frame has only one flag each for hands and
+  // orientations.
   if (frame.bodies.size() == 1) {
     frame.has_hands = hands;
     frame.has_orientations = orientations;
@@ -147,7 +149,7 @@ Refusal take_hello(const Json& json, const KinectOrigin& origin, KinectMessage& 
   return take_joint_set(json);
 }
 
-/// Decodes a frame; part, more_parts, utc_us and floor are optional.
+/// Decodes a frame. The keys part, more_parts, utc_us and floor are optional.
 Refusal take_frame(const Json& json, const KinectOrigin& origin, KinectMessage& message) {
   if (const auto refusal = take_joint_set(json); refusal != Refusal::none) return refusal;
   KinectFrame frame;
@@ -169,7 +171,7 @@ Refusal take_frame(const Json& json, const KinectOrigin& origin, KinectMessage& 
   return Refusal::none;
 }
 
-/// Decodes a ping; its echo is optional.
+/// Decodes a ping. Its echo is optional.
 Refusal take_ping(const Json& json, const KinectOrigin& origin, KinectMessage& message) {
   KinectPing ping{origin, 0, std::nullopt};
   if (!take(json, "sent_ticks", ping.sent_ticks)) return Refusal::wrong_fields;
@@ -184,7 +186,7 @@ Refusal take_ping(const Json& json, const KinectOrigin& origin, KinectMessage& m
   return Refusal::none;
 }
 
-// The host only sends pongs; tests and senders decode them.
+// The host sends pongs and never receives them. Only tests and simulated senders decode them.
 Refusal take_pong(const Json& json, const KinectOrigin& origin, KinectMessage& message) {
   KinectPong pong{origin, 0, 0};
   const bool whole =
@@ -193,7 +195,8 @@ Refusal take_pong(const Json& json, const KinectOrigin& origin, KinectMessage& m
   return verdict(whole);
 }
 
-/// Reads the common fields and then those of the type. `room`: bytes of the line with its end.
+/// Reads the common fields, and then the fields of the message's type. `room`: bytes of the line,
+/// including its end.
 Refusal take_message(const Json& json, std::size_t room, KinectMessage& message) {
   if (!json.is_object()) return Refusal::bad_json;
   std::string stated, type;
@@ -219,7 +222,8 @@ KinectRefusal decode_kinect_line(std::string_view line, KinectMessage& message) 
   if (line.size() > most_kinect_line) return Refusal::too_long;
   const Json json = Json::parse(line.begin(), line.end(), nullptr, false);
   if (json.is_discarded()) return Refusal::bad_json;
-  // The line end counts as one byte, whether it is \n, \r\n or absent: a datagram may leave it out.
+  // The line end counts as one byte, whether it is \n, \r\n or absent. A datagram may have no line
+  // end.
   const std::size_t room = line.substr(0, line.find_last_not_of("\r\n") + 1).size() + 1;
   Refusal refusal = take_message(json, room, message);
   if (refusal == Refusal::none) refusal = check(message);
@@ -227,7 +231,7 @@ KinectRefusal decode_kinect_line(std::string_view line, KinectMessage& message) 
   return refusal;
 }
 
-// The text of a pong has no characters that JSON escapes.
+// A pong contains only numbers and fixed texts, so nothing in it needs JSON's escapes.
 std::string encode_kinect_line(const KinectPong& pong) {
   return fmt::format(
       R"({{"schema":"{}","type":"pong","sensor":{},"session":{},"sequence":{},"pong_sequence":{},"nonce":{}}})"

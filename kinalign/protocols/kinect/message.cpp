@@ -9,7 +9,7 @@ namespace {
 
 using Refusal = KinectRefusal;
 
-// Ticks beyond the limit would not be exact in JSON, so neither encoding accepts them.
+// Ticks beyond the limit are not exact in JSON, so neither encoding accepts them.
 bool within(std::int64_t value) {
   return value >= -most_kinect_ticks && value <= most_kinect_ticks;
 }
@@ -19,7 +19,8 @@ bool is_printable(const std::string& text) {
          std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
 }
 
-// Ranges of the SDK's enumerations: four edges as bits, hand states 0 to 4, tracking states 0 to 2.
+// The values must be within the ranges of the SDK: four bits for clipped edges, hand states 0 to 4,
+// and tracking states 0 to 2.
 Refusal check_body(const KinectFrame& frame, const KinectBody& body) {
   const bool no_hands = body.hand_left == 0 && body.hand_right == 0 && body.hand_confidence == 0;
   if (body.clipped_edges > 15 || body.hand_left > 4 || body.hand_right > 4 ||
@@ -37,9 +38,10 @@ struct Check {
     return is_printable(hello.serial) && is_printable(hello.sdk) ? Refusal::none
                                                                  : Refusal::wrong_fields;
   }
-  /// Checks numbers against their limits; without bodies there are no hands and orientations.
+  /// Checks all numbers against their limits. A frame without bodies must have no hands and no
+  /// orientations.
   Refusal operator()(const KinectFrame& frame) const {
-    // A frame that has more parts has at least one part after this one.
+    // `more_parts` announces at least one further part.
     const std::size_t parts = frame.part + (frame.more_parts ? 2U : 1U);
     if (frame.bodies.size() > most_kinect_bodies || parts > most_kinect_parts ||
         !within(frame.device_ticks) || !within(frame.taken_ticks) || !within(frame.sent_ticks) ||

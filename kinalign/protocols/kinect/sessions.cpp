@@ -11,13 +11,14 @@ namespace kinalign {
 
 namespace {
 
-// The newest session and 16 ended ones. A frame of an ended session is dropped instead of starting
-// the session again.
+// The newest session and 16 ended sessions are known. Without them, a frame of an ended session
+// would start that session again.
 constexpr std::size_t most_sessions = 17;
-// Half a second of frames; fewer may be delayed while a sender is started again.
+// Half a second of frames. Fewer frames of the old session may arrive late after a restart of the
+// sender.
 constexpr std::uint32_t overlapping_frames = 16;
 
-/// True if the session advances: by its ticks or, if these are equal, by its number.
+/// True if `one` is after `from`: by its ticks or, if these are equal, by its number.
 bool is_after(const KinectMoment& one, const KinectMoment& from) {
   const bool same_ticks =
       one.device_ticks == from.device_ticks && one.sent_ticks == from.sent_ticks;
@@ -49,8 +50,8 @@ Finding overlap_finding(const std::string& place, const KinectOverlap& overlap,
           meaning, "give each sensor an id of its own: --sensor of its sender"};
 }
 
-// An unknown session is a sender that was started, so it becomes the newest. An older session that
-// keeps sending new frames shows that a second sender uses the same id.
+// An unknown session means that a sender has started, so it becomes the newest session. If an older
+// session keeps sending new frames, a second sender uses the same sensor id.
 bool KinectSessions::take(const KinectMoment& moment, std::string_view sender) {
   const std::uint32_t session = moment.origin.session;
   const auto known =
@@ -63,7 +64,7 @@ bool KinectSessions::take(const KinectMoment& moment, std::string_view sender) {
   }
   Session& newest = sessions_.back();
   const bool is_newest = &*known == &newest;
-  // Repeated and late frames say nothing about which sender is running now.
+  // A duplicate or late frame does not show that its sender is still running.
   if (!is_after(moment, known->latest)) return is_newest;
   known->latest = moment;
   if (!is_newest && ++known->frames_after_end == overlapping_frames && !overlap_) {

@@ -17,7 +17,8 @@ bool is_blank(std::uint8_t byte) {
   return byte == ' ' || byte == '\t' || byte == '\r' || byte == '\n';
 }
 
-/// True if the bytes begin with the magic, or with as much of it as they are long.
+/// True if the bytes begin with the magic. If there are fewer bytes than the magic has, all of them
+/// must agree with it.
 bool may_be_magic(std::span<const std::uint8_t> bytes) {
   const auto front = bytes.first(std::min(bytes.size(), kinect_magic.size()));
   return std::equal(front.begin(), front.end(), kinect_magic.begin());
@@ -25,7 +26,8 @@ bool may_be_magic(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-// Each datagram may have its own encoding: the first byte tells a line from a binary message.
+// Each datagram may have its own encoding. The first byte shows whether it is a line or a binary
+// message.
 KinectRefusal decode_kinect_datagram(std::span<const std::uint8_t> datagram,
                                      KinectMessage& message) {
   message = {};
@@ -44,14 +46,14 @@ void KinectStreamDecoder::take(KinectRefusal refusal, KinectMessage& message,
   }
 }
 
-/// Number of bytes up to the possible beginning of a message. Skipped bytes may be the rest of a
-/// binary message; among them a '{' counts only at the start of a line.
+/// The number of bytes before the next possible beginning of a message. Skipped bytes may be the
+/// rest of a binary message, so a '{' among them begins a line only at the start of a line.
 std::size_t KinectStreamDecoder::skip_to_start(std::span<const std::uint8_t> bytes) {
   std::size_t at = 0;
   while (at < bytes.size() && !may_be_magic(bytes.subspan(at))) {
     const bool blank = is_blank(bytes[at]);
     if (mode_ == Mode::unknown && bytes[at] == '{' && (!lost_ || skipped_ == '\n')) break;
-    // A stretch of invalid bytes counts as one refusal. Blanks between lines are no fault.
+    // A stretch of invalid bytes counts as one refusal. Blanks between lines are allowed.
     if (mode_ == Mode::binary || !blank) {
       if (!lost_) ++counts_.refused[static_cast<std::size_t>(Refusal::no_message)];
       lost_ = true;
@@ -62,14 +64,15 @@ std::size_t KinectStreamDecoder::skip_to_start(std::span<const std::uint8_t> byt
   return at;
 }
 
-/// Handles one binary message. Returns the number of bytes used; 0: more are needed. After a wrong
-/// CRC the whole message is skipped, so that each byte is summed once only; its length fits its
-/// head.
+/// Handles one binary message. Returns the number of bytes used; 0 if more bytes are needed. After
+/// a wrong CRC the whole message is skipped, so that no byte is checked twice. The length is safe
+/// to use, because it fits the head.
 std::size_t KinectStreamDecoder::step_binary(std::span<const std::uint8_t> bytes,
                                              std::vector<KinectMessage>& out) {
   if (const std::size_t skipped = skip_to_start(bytes); skipped > 0) return skipped;
   if (bytes.size() < kinect_head_size) return 0;
-  // An impossible head: the magic stood in other data. The search continues directly after it.
+  // If the head is impossible, the magic was part of other data. The search continues directly
+  // after the magic.
   if (const Refusal refusal = check_kinect_head(bytes); refusal != Refusal::none) {
     ++counts_.refused[static_cast<std::size_t>(refusal)];
     counts_.skipped_bytes += kinect_magic.size();
@@ -86,14 +89,14 @@ std::size_t KinectStreamDecoder::step_binary(std::span<const std::uint8_t> bytes
   return length;
 }
 
-/// Handles one line. Returns the number of bytes used; 0: more are needed.
+/// Handles one line. Returns the number of bytes used; 0 if more bytes are needed.
 std::size_t KinectStreamDecoder::step_line(std::span<const std::uint8_t> bytes,
                                            std::vector<KinectMessage>& out) {
   const auto end =
       std::find(bytes.begin() + static_cast<std::ptrdiff_t>(searched_), bytes.end(), '\n');
   const auto length = static_cast<std::size_t>(end - bytes.begin());
-  // No line end yet. A line beyond the limit is dropped piece by piece, so memory stays bounded,
-  // and it counts once.
+  // The line end has not arrived. A line beyond the limit is dropped piece by piece to limit the
+  // memory, and counts as one refusal.
   if (end == bytes.end()) {
     searched_ = length;
     if (length <= most_kinect_line) return 0;
@@ -118,7 +121,8 @@ std::size_t KinectStreamDecoder::step_line(std::span<const std::uint8_t> bytes,
   return length + 1;
 }
 
-/// Handles the next message. The first one decides between lines and binary.
+/// Handles the next message. The first message decides whether the connection has lines or binary
+/// messages.
 std::size_t KinectStreamDecoder::step(std::span<const std::uint8_t> bytes,
                                       std::vector<KinectMessage>& out) {
   if (mode_ == Mode::lines) return step_line(bytes, out);
@@ -144,7 +148,8 @@ void KinectStreamDecoder::feed(std::span<const std::uint8_t> piece,
 }
 
 void KinectStreamDecoder::finish(std::vector<KinectMessage>& out) {
-  // The last line may lack its end; an empty line is ignored anyway.
+  // The last line may have no line end. An added line end is harmless, because an empty line is
+  // ignored.
   if (mode_ == Mode::lines) {
     const std::uint8_t end = '\n';
     feed({&end, 1}, out);

@@ -21,8 +21,8 @@ std::optional<Mark::Kind> mark_kind_named(std::string_view name) {
   return std::nullopt;
 }
 
-// Texts of other programs appear in messages and on the console, where control characters could
-// change the display.
+// Messages and the console show texts of other programs. Control characters could change the
+// display.
 bool is_mark_text(std::string_view text) {
   const auto harmless = [](char c) {
     const auto byte = static_cast<unsigned char>(c);
@@ -32,7 +32,7 @@ bool is_mark_text(std::string_view text) {
 }
 
 bool MarkRepeats::is_repeat(const Mark& mark, HostTime now) {
-  // Ids that are too old or too many are forgotten first, so memory is bounded whatever arrives.
+  // Old ids and ids beyond the limit are removed, oldest first, so that memory is limited.
   while (!seen_.empty() && (seen_.size() > remembered || now - seen_.front().at > for_so_long_)) {
     ids_.erase(seen_.front().id);
     seen_.pop_front();

@@ -17,7 +17,8 @@ using Refusal = MarkCallRefusal;
 
 constexpr const char* schema = "kinalign.mark/1";
 
-// Absent if the key is missing or its value is no text; both are refused for the same reason.
+// The result is empty if the key is missing or its value is not a text. Both are refused for the
+// same reason.
 std::optional<std::string> text_at(const Json& call, const char* key) {
   const auto found = call.find(key);
   if (found == call.end() || !found->is_string()) return std::nullopt;
@@ -29,8 +30,8 @@ bool is_id(std::string_view id) {
          std::all_of(id.begin(), id.end(), [](char c) { return c >= ' ' && c <= '~'; });
 }
 
-// Only a start or a stop has an effect, so only these have a latency. The negated comparison also
-// refuses NaN.
+// Only starts and stops have an effect, so only these marks may have a latency. The negated
+// comparison also refuses NaN.
 Refusal take_latency(const Json& call, Mark& mark) {
   const auto found = call.find("latency_ms");
   if (found == call.end()) return Refusal::none;
@@ -42,7 +43,8 @@ Refusal take_latency(const Json& call, Mark& mark) {
   return Refusal::none;
 }
 
-// Only a mark of kind `text` needs a text: the text is its whole content.
+// A mark of kind `text` must have a text, because the text is its whole content. Other kinds need
+// none.
 Refusal take_text(const Json& call, Mark& mark) {
   if (!call.contains("text")) {
     return mark.kind == Mark::Kind::text ? Refusal::wrong_text : Refusal::none;
@@ -54,8 +56,8 @@ Refusal take_text(const Json& call, Mark& mark) {
   return Refusal::none;
 }
 
-// The schema comes first: without it the datagram may be of any other program. The id is taken
-// before the other checks, so that a refusal can name the call.
+// The schema is checked first, because a datagram without it may come from any other program. The
+// id is read before the other checks, so that the answer to a refused call can name the id.
 Refusal take(const Json& call, Mark& mark) {
   if (!call.is_object()) return Refusal::bad_json;
   if (text_at(call, "schema") != schema) return Refusal::wrong_schema;
@@ -69,7 +71,8 @@ Refusal take(const Json& call, Mark& mark) {
   return take_text(call, mark);
 }
 
-/// The answer's text; empty if it is longer than the call, so that answers can't amplify traffic.
+/// The text of the answer. It is empty if it would be longer than the call, so that answers can't
+/// be used for amplification.
 std::string fitting(const Json& answer, std::size_t call_size) {
   const std::string text = answer.dump();
   return text.size() <= call_size ? text : std::string();
@@ -102,12 +105,12 @@ MarkCallRefusal decode_mark_call(std::string_view datagram, Mark& mark) {
   if (datagram.size() > most_mark_call) return Refusal::too_long;
   const Json call = Json::parse(datagram.begin(), datagram.end(), nullptr, false);
   const Refusal refusal = call.is_discarded() ? Refusal::bad_json : take(call, mark);
-  // Only the id remains; the answer to a refused call names it.
+  // Only the id is kept. The answer to a refused call contains the id.
   if (refusal != Refusal::none) mark = {Mark::Kind::text, "", std::nullopt, std::move(mark.id)};
   return refusal;
 }
 
-// Used by simulated clicks and by tests; other programs send the same object.
+// Encodes a call as other programs send it. Simulated clicks and tests use it.
 std::string encode_mark_call(const Mark& mark) {
   Json call = {{"schema", schema}, {"kind", name_of(mark.kind)}, {"id", mark.id}};
   if (mark.latency) call["latency_ms"] = static_cast<double>(mark.latency->count()) / 1e6;
@@ -115,7 +118,7 @@ std::string encode_mark_call(const Mark& mark) {
   return call.dump();
 }
 
-// A repeat is answered like the first call, because the first answer may be lost.
+// A repeated call is answered like the first one, because the first answer may have been lost.
 std::string answer_to_mark_call(const Mark& mark, MarkAnswer answer, std::size_t call_size) {
   const char* is = answer == MarkAnswer::fresh ? "new" : "repeat";
   return fitting({{"mark", mark.id}, {"is", is}}, call_size);
@@ -123,7 +126,7 @@ std::string answer_to_mark_call(const Mark& mark, MarkAnswer answer, std::size_t
 
 std::string answer_to_refused_call(const Mark& mark, MarkCallRefusal refusal,
                                    std::size_t call_size) {
-  if (refusal < Refusal::wrong_kind) return {};  // the call is good, or it has no schema of ours
+  if (refusal < Refusal::wrong_kind) return {};  // accepted, or without the schema
   Json answer = Json::object();
   if (!mark.id.empty()) answer["mark"] = mark.id;
   answer["is"] = name_of(refusal);

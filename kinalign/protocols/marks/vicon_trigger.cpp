@@ -16,7 +16,7 @@ using Refusal = ViconRefusal;
 
 constexpr std::string_view blanks = " \t\r\n";
 
-// A number from 0 to `most`; the whole text must be the number.
+// Reads a number from 0 to `most`. The whole text must be the number.
 std::optional<std::int64_t> number_up_to(std::int64_t most, std::string_view text) {
   std::int64_t value = 0;
   const bool fits = parse_integer(text, value) && value >= 0 && value <= most;
@@ -30,8 +30,9 @@ std::string* text_named(std::string_view name, ViconTrigger& trigger) {
   return name == "DatabasePath" ? &trigger.database_path : nullptr;
 }
 
-/// Fills a trigger from the outermost element and the elements in it, which have an attribute VALUE
-/// and no content. An error without text stops the parser; `refusal()` has the reason.
+/// Fills a trigger from the outermost element and its child elements. A child element has an
+/// attribute VALUE and no content. An error without text stops the parser, and `refusal()` returns
+/// the reason.
 class TriggerReader : public XmlHandler {
  public:
   explicit TriggerReader(ViconTrigger& trigger) : trigger_(trigger) {}
@@ -56,13 +57,14 @@ class TriggerReader : public XmlHandler {
     return Failure(Error{});
   }
 
-  /// Takes an element. Unknown ones are ignored.
+  /// Takes a child element. Unknown elements are ignored.
   Result<void> take(std::string_view name, std::string_view value) {
-    constexpr std::int64_t most_delay_ms = 60'000;  // the limit of a mark's latency
+    constexpr std::int64_t most_delay_ms = 60'000;  // also the limit of a mark's latency
     std::string* text = text_named(name, trigger_);
     const bool is_delay = name == "Delay";
     if (text == nullptr && !is_delay && name != "PacketID") return {};
-    // An element that occurs twice is refused, because the sender's intention is unknown.
+    // An element that occurs twice is refused, because it is not clear which value the sender
+    // meant.
     if (std::find(taken_.begin(), taken_.end(), name) != taken_.end()) return stop(Refusal::twice);
     taken_.emplace_back(name);
     if (text != nullptr) return take_text(value, *text);
@@ -88,9 +90,10 @@ class TriggerReader : public XmlHandler {
   Refusal refusal_ = Refusal::none;
 };
 
-/// Decodes the document. The parser's own errors have no other reason than bad XML.
+/// Decodes the document. Every error of the XML parser is refused as bad XML.
 Refusal read(std::string_view document, ViconTrigger& trigger) {
-  // Neither document types nor comments occur. Without a document type no entity can be defined.
+  // Broadcasts contain neither document types nor comments. Without a document type, no entity can
+  // be defined.
   if (document.find("<!") != std::string_view::npos) return Refusal::bad_xml;
   TriggerReader reader(trigger);
   XmlFeed feed("");
@@ -121,8 +124,8 @@ const char* expected_of(ViconRefusal refusal) {
 ViconRefusal decode_vicon_trigger(std::string_view datagram, ViconTrigger& trigger) {
   trigger = {};
   if (datagram.size() > most_vicon_trigger) return Refusal::too_long;
-  // A zero byte after the text is optional. Blanks in front of an XML declaration are not XML, but
-  // some programs send them.
+  // A zero byte may follow the text. Some programs send blanks in front of the XML declaration,
+  // although XML does not allow them.
   while (datagram.ends_with('\0')) datagram.remove_suffix(1);
   datagram.remove_prefix(std::min(datagram.find_first_not_of(blanks), datagram.size()));
   const Refusal refusal = read(datagram, trigger);

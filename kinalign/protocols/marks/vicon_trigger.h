@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decodes the broadcasts with which Vicon's programs start and stop each other:
+// Decodes the broadcasts by which Vicon's programs start and stop each other's captures.
 // docs/formats/marks.md.
 #pragma once
 
@@ -7,15 +7,15 @@
 
 namespace kinalign {
 
-/// Bytes of a broadcast. Longer datagrams are refused unread.
+/// The most bytes of a broadcast. A longer datagram is refused without parsing.
 inline constexpr std::size_t most_vicon_trigger = 1500;
 
-/// The content of one broadcast. Texts are empty if their elements are absent. The path belongs to
-/// the sender's machine; it is recorded and never opened.
+/// The content of one broadcast. A text is empty if its element is absent. The path belongs to the
+/// sender's machine: it is recorded, but never opened.
 struct ViconTrigger {
   bool start = false;  // false: a stop
   std::string name, notes, description, database_path, result;
-  std::optional<Duration> delay;  // from the broadcast to the capture's start or stop
+  std::optional<Duration> delay;  // time from the broadcast to the start or stop of the capture
   std::optional<std::int64_t> packet_id;
 
   bool operator==(const ViconTrigger&) const = default;
@@ -25,17 +25,17 @@ enum class [[nodiscard]] ViconRefusal : std::uint8_t{none,         too_long,   b
                                                      wrong_number, wrong_text, twice};
 inline constexpr std::size_t vicon_refusals = 7;
 
-/// The refusal's name in --json: "bad_xml".
+/// The refusal's name in the output of --json, for example "bad_xml".
 const char* name_of(ViconRefusal refusal);
 
 /// The expected content, for a message: "a CaptureStart or CaptureStop".
 const char* expected_of(ViconRefusal refusal);
 
-/// Decodes a broadcast. After a refusal `trigger` is empty.
+/// Decodes a broadcast. If it is refused, `trigger` is empty.
 ViconRefusal decode_vicon_trigger(std::string_view datagram, ViconTrigger& trigger);
 
-/// The mark of a broadcast. Several network cards send the same broadcast, so its packet id, kind
-/// and name make the id by which repeats are recognised.
+/// The mark of a broadcast. A sender may send the same broadcast over several network cards. Packet
+/// id, kind and name together form the mark's id, so that such repeats are recognised.
 Mark mark_of(const ViconTrigger& trigger);
 
 }  // namespace kinalign

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Findings about a Noitom stream, with advice to the user.
+// Makes findings about a Noitom stream, with advice to the user.
 #include "kinalign/protocols/noitom/stream.h"
 
 #include <fmt/format.h>
@@ -8,7 +8,7 @@ namespace kinalign {
 
 namespace {
 
-// Text for one kind of refusal. `repair` is empty if the user can't change anything.
+// The texts for one kind of refusal. `repair` is empty if the user can't do anything.
 struct Advice {
   NoitomRefusal refusal;
   std::string_view expected, meaning, repair;
@@ -48,8 +48,7 @@ Findings NoitomDecoder::findings(const std::string& name) const {
   for (const Advice& a : advice) {
     const std::uint64_t times = counts_[a.refusal];
     if (times == 0) continue;
-    // On a wireless network an incomplete frame is an ordinary loss, not a fault of the
-    // set-up.
+    // On a wireless network, incomplete frames are ordinary losses and not a fault of the set-up.
     const bool is_loss = a.refusal == NoitomRefusal::incomplete;
     findings.push_back({is_loss ? Severity::note : Severity::warning,
                         Error{name, 0, std::string(a.expected),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One frame of the BVH broadcast of Noitom's Axis Neuron and Axis Studio, in the three forms that
-// they send. Layout: docs/formats/noitom_stream.md.
+// One frame of the BVH broadcast that Noitom's Axis Neuron and Axis Studio send. Three forms of a
+// frame exist: docs/formats/noitom_stream.md.
 #pragma once
 
 #include <cstddef>
@@ -12,24 +12,24 @@
 
 namespace kinalign {
 
-/// The form of a frame. The header's version, or its count and flags, tell the two binary forms
-/// apart.
+/// The form of a frame. In a binary frame, the header's version distinguishes the old from the new
+/// form. If the version is unknown, the header's count and flags do.
 enum class NoitomForm : std::uint8_t { old_header, new_header, text };
 
-/// The values of one BVH row. Names, offsets and the order of rotations are not in the stream; they
-/// come from a BVH file of the same program.
+/// The values of one row of a BVH file. The stream does not contain joint names, offsets and the
+/// order of rotations. They come from a BVH file of the same program.
 struct NoitomFrame {
   NoitomForm form = NoitomForm::new_header;
-  std::uint32_t avatar = 0;  // counted from 0
-  std::string name;          // name of the avatar, in the sender's encoding
-  /// The source's frame number; only the new header has one.
+  std::uint32_t avatar = 0;  // from 0
+  std::string name;          // the avatar's name, in the sender's encoding
+  /// The source's frame number. Only the new header contains one.
   std::optional<std::uint32_t> frame_index;
   bool displacement = false;  // every joint has a position, not only the root
-  bool reference = false;     // the first six values are a reference
-  /// Centimetres and degrees as sent, including the reference; not checked.
+  bool reference = false;     // the first six values are a reference point and rotation
+  /// Values as sent, centimetres and degrees, including the reference. They are not checked.
   std::vector<float> values;
 
-  /// The values of a BVH row, without the reference.
+  /// The values of a BVH row, which do not include the reference.
   std::span<const float> row() const;
 
   bool operator==(const NoitomFrame&) const = default;
@@ -38,8 +38,8 @@ struct NoitomFrame {
 /// Number of values in a frame: 180 or 354, and six more with a reference.
 std::size_t noitom_values(bool displacement, bool reference);
 
-/// Appends the frame's bytes with the new header, whatever its form. The values must fit the flags;
-/// a name is cut to 32 bytes.
+/// Appends the frame's bytes with the new header, whatever its form. The number of values must fit
+/// the flags. A name is cut to 32 bytes.
 void append_noitom(const NoitomFrame& frame, std::vector<std::uint8_t>& out);
 
 }  // namespace kinalign

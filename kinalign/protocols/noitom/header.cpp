@@ -13,8 +13,9 @@ namespace {
 constexpr std::size_t old_flags_end = 18, new_flags_end = 10;
 constexpr std::size_t minor_at = 4, major_at = 5;
 
-// Number of values and flags of a header. Both layouts state them redundantly: the count follows
-// from the flags. `fits` uses this to tell the layouts from each other and from random bytes.
+// The number of values and the flags of a header. The flags determine the number of values, so the
+// header is redundant. `fits` uses this redundancy to distinguish the two layouts, and headers from
+// random bytes.
 struct Shape {
   std::uint64_t count = 0, displacement = 0, reference = 0;
 
@@ -33,8 +34,8 @@ Shape new_shape(std::span<const std::uint8_t> b) {
   return {little_at<std::uint16_t>(b, 6), b[8], b[9]};
 }
 
-/// The layout, by version 1.0 for the old one or 1.1, 1.2, ... for the new one. With any other
-/// version, the layout that fits.
+/// The layout of a header. Version 1.0 is the old layout, and versions 1.1, 1.2 and so on are the
+/// new layout. For any other version, the result is the layout whose count and flags fit.
 std::optional<NoitomForm> form_of(std::span<const std::uint8_t> b) {
   const unsigned minor = b[minor_at], major = b[major_at];
   const bool may_be_new = major != 1 || minor >= 1, may_be_old = major != 1 || minor == 0;
@@ -43,7 +44,7 @@ std::optional<NoitomForm> form_of(std::span<const std::uint8_t> b) {
   return std::nullopt;
 }
 
-// The name's field is padded with zeros; a name of 32 bytes has no zero at its end.
+// The field of the name is padded with zeros. A name of 32 bytes has no zero at its end.
 std::string name_of(std::span<const std::uint8_t> field) {
   const auto end = std::find(field.begin(), field.end(), std::uint8_t{0});
   return {field.begin(), end};

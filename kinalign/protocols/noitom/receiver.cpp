@@ -7,8 +7,8 @@ namespace kinalign {
 
 namespace {
 
-// Half of the time to the next frame of the fastest suits. A sender sends the pieces of one frame
-// without pause.
+// Half of the time between frames of the fastest suits. A sender sends all pieces of one frame
+// without a pause, so they arrive closer together.
 constexpr Duration longest_spread = std::chrono::milliseconds(4);
 
 std::optional<NoitomHeader> header_of(std::span<const std::uint8_t> bytes) {
@@ -18,9 +18,9 @@ std::optional<NoitomHeader> header_of(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-// A cut frame goes through three states: its head waits in the decoder, then its last piece waits
-// in `cut_`, then the next datagram decides. A datagram that is longer than the missing rest
-// belongs to another frame, so the cut frame is dropped.
+// A cut frame is a frame in several datagrams. First its head waits in the decoder. Then its last
+// piece waits in `cut_`. Then the next datagram decides. If a datagram is longer than the missing
+// rest, it belongs to another frame, and the cut frame is dropped.
 void NoitomReceiver::feed_datagram(std::span<const std::uint8_t> datagram, HostTime arrival,
                                    std::vector<NoitomArrival>& out) {
   if (datagram.empty()) return;
@@ -34,7 +34,7 @@ void NoitomReceiver::feed_datagram(std::span<const std::uint8_t> datagram, HostT
       return;
     }
   }
-  // Only a header that continues the numbers shows that the cut frame is whole.
+  // The cut frame is complete only if the next header continues the frame numbers.
   if (cut_) settle(!cut_->last_piece.empty() && header && comes_before(header->frame), out);
   decoder_.feed(datagram, out);
   // No sender splits a frame within its header.
@@ -50,16 +50,16 @@ bool NoitomReceiver::arrived_together() const {
   return !cut_->last_piece.empty() && cut_->ended - cut_->began <= longest_spread;
 }
 
-// A sender with several avatars sends a frame of each under one number. Without numbers, only the
-// time shows that the last piece belongs to this frame.
+// If a sender has several avatars, their frames have the same number. Without numbers, only the
+// arrival times show that the last piece belongs to this frame.
 bool NoitomReceiver::comes_before(const NoitomFrame& next) const {
   const NoitomBeginning& head = cut_->head;
   if (!head.index || !next.frame_index) return arrived_together();
   return *next.frame_index - *head.index == (next.avatar > head.avatar ? 0U : 1U);
 }
 
-// Outputs the cut frame or drops it. After a fault, the next cut frame is dropped too: a delayed
-// piece of the first may have taken the place of its own.
+// Outputs the cut frame or drops it. After a fault the next cut frame is dropped, too, because a
+// delayed piece of the first frame may have replaced one of its own pieces.
 void NoitomReceiver::settle(bool is_whole, std::vector<NoitomArrival>& out) {
   const bool is_after_fault = std::exchange(after_fault_, !is_whole);
   if (is_whole && !is_after_fault) {

@@ -12,14 +12,15 @@ namespace kinalign {
 
 namespace {
 
-// Bytes taken at once. The buffer holds at most one incomplete frame and one slice, however long
-// the piece is that was fed.
+// The bytes that are handled at once. The buffer therefore contains at most one incomplete frame
+// and one slice, even if the caller passes a long piece.
 constexpr std::size_t slice = 4096;
-// A longer text than 360 values of 40 characters and a name is no frame.
+// A frame in text form is shorter: it has at most 360 values of 40 characters, and a name.
 constexpr std::size_t longest_text = 16'384;
 constexpr std::size_t most_avatars = 64;
-constexpr std::size_t zipped_head = 10;  // CCCC, a length, and gzip's 1F 8B
-// Most values of a frame with another count than ours: 200 joints with displacement and a
+constexpr std::size_t zipped_head = 10;  // the letters CCCC, a length, and the first bytes of gzip,
+                                         // 1F 8B
+// The most values of a frame whose count is unknown to kinalign: 200 joints with displacement and a
 // reference.
 constexpr std::size_t most_values = 1206;
 
@@ -43,7 +44,7 @@ std::size_t header_within(std::span<const std::uint8_t> bytes, std::size_t from,
   return end;
 }
 
-// The values of a whole frame, f32 in little-endian order.
+// The values of a complete frame, 32-bit floats in little-endian order.
 std::vector<float> values_of(std::span<const std::uint8_t> frame) {
   std::vector<float> values;
   values.reserve((frame.size() - noitom_header_size) / 4);
@@ -71,8 +72,8 @@ void NoitomDecoder::take_all(std::vector<NoitomArrival>& out) {
   }
 }
 
-// The bytes at the front can't be completed. They are skipped up to the next header; a frame that
-// begins there may still be whole.
+// The bytes at the front will not be completed. They are skipped up to the next header, where a
+// complete frame may begin.
 void NoitomDecoder::give_up(std::vector<NoitomArrival>& out) {
   while (waiting() > 0) {
     if (begins_noitom_header(ahead())) count_incomplete();
@@ -96,7 +97,8 @@ bool NoitomDecoder::waits_within_header() const {
   return waiting() > 0 && waiting() < noitom_header_size && ahead()[0] == 0xff;
 }
 
-// Every move of the front resets what was learnt about the bytes behind it.
+// Every move of the front resets searched_ and behind_text_, because they describe the bytes at the
+// old front.
 void NoitomDecoder::take(std::size_t bytes) {
   at_ += bytes;
   searched_ = 0;
@@ -108,7 +110,7 @@ void NoitomDecoder::skip(std::size_t bytes) {
   counts_.bytes_skipped += bytes;
 }
 
-/// Handles the data at the front, by its first byte.
+/// Handles the data at the front. Its first byte shows the form.
 NoitomDecoder::Step NoitomDecoder::step(std::vector<NoitomArrival>& out) {
   const std::uint8_t first = ahead()[0];
   if (first == 0xff) return marked(out);
@@ -122,7 +124,8 @@ NoitomDecoder::Step NoitomDecoder::step(std::vector<NoitomArrival>& out) {
   return Step::go_on;
 }
 
-// Handles FF and the byte after it: the tokens of Noitom's three kinds of header.
+// Handles data that begin with FF. The next byte shows which of Noitom's three kinds of header it
+// is.
 NoitomDecoder::Step NoitomDecoder::marked(std::vector<NoitomArrival>& out) {
   const auto bytes = ahead();
   if (bytes.size() < 2) return Step::wait;
@@ -133,7 +136,7 @@ NoitomDecoder::Step NoitomDecoder::marked(std::vector<NoitomArrival>& out) {
   return Step::go_on;
 }
 
-/// Handles a binary header and, once complete, the frame after it.
+/// Handles a binary header and, when it is complete, the frame after it.
 NoitomDecoder::Step NoitomDecoder::binary(std::vector<NoitomArrival>& out) {
   const auto bytes = ahead();
   if (bytes.size() < noitom_header_size) return Step::wait;
@@ -150,8 +153,8 @@ NoitomDecoder::Step NoitomDecoder::binary(std::vector<NoitomArrival>& out) {
   }
   const std::size_t size = noitom_header_size + 4 * header->values;
   if (bytes.size() < size) return Step::wait;
-  // If a header begins among the values, a piece of this frame was lost. The values before that
-  // header can't be trusted.
+  // If another header begins among the values, a piece of this frame was lost. The values before
+  // that header may be wrong.
   const std::size_t next =
       header_within(bytes.first(size), noitom_header_size, size, begins_noitom_header);
   if (next < size) {
@@ -165,8 +168,9 @@ NoitomDecoder::Step NoitomDecoder::binary(std::vector<NoitomArrival>& out) {
   return Step::go_on;
 }
 
-// Counts the frame at the front as incomplete. Its number has arrived with its header, so it does
-// not count as lost. Only known avatars are counted, because the bytes may be no header.
+// Counts the frame at the front as incomplete. Its header with its number has arrived, so the
+// number does not count as lost. Unknown avatars are not counted, because the bytes may not be a
+// header.
 void NoitomDecoder::count_incomplete() {
   refuse(NoitomRefusal::incomplete);
   const auto head = beginning();
@@ -175,9 +179,10 @@ void NoitomDecoder::count_incomplete() {
   if (avatar != avatars_.end()) avatar->second.by_index.push(*head->index);
 }
 
-// Handles a header whose count and flags fit no layout. It is a frame with another count if the
-// next header follows after that many values. A frame that begins in between is not delayed
-// meanwhile. Only complete headers are considered, so that the cuts don't matter.
+// Handles a header whose count and flags fit no layout. If the next header follows after as many
+// values as the count says, the data are a frame with an unknown count. If a header begins earlier,
+// this header is dropped at once. Only complete headers are considered, so the result does not
+// depend on cuts.
 NoitomDecoder::Step NoitomDecoder::misfit() {
   const auto bytes = ahead();
   const std::size_t values = stated_noitom_values(bytes);
@@ -202,7 +207,7 @@ NoitomDecoder::Step NoitomDecoder::misfit() {
 }
 
 // Handles a header of 64 bytes that ends in FF and `last_byte`. The bytes after it are skipped one
-// by one: its own length could make us skip a frame.
+// by one, because a wrong length in the header could skip a whole frame.
 NoitomDecoder::Step NoitomDecoder::other_header(std::uint8_t last_byte, NoitomRefusal meaning) {
   const auto bytes = ahead();
   if (bytes.size() < noitom_header_size) return Step::wait;
@@ -215,7 +220,7 @@ NoitomDecoder::Step NoitomDecoder::other_header(std::uint8_t last_byte, NoitomRe
   return Step::go_on;
 }
 
-/// Handles the head of a compressed stream, which is refused.
+/// Handles the beginning of a compressed stream, which is refused.
 NoitomDecoder::Step NoitomDecoder::zipped() {
   const auto bytes = ahead();
   const auto mark = bytes.first(std::min<std::size_t>(4, bytes.size()));
@@ -233,8 +238,7 @@ NoitomDecoder::Step NoitomDecoder::zipped() {
   return Step::go_on;
 }
 
-// Handles text from a digit to "||". A byte that can't occur in text ends the attempt before that
-// byte.
+// Handles text from a digit to "||". If a byte can't occur in text, the text ends before that byte.
 NoitomDecoder::Step NoitomDecoder::text(std::vector<NoitomArrival>& out) {
   const auto bytes = ahead();
   for (std::size_t at = searched_; at < bytes.size(); ++at) {
@@ -257,7 +261,7 @@ NoitomDecoder::Step NoitomDecoder::text(std::vector<NoitomArrival>& out) {
 }
 
 void NoitomDecoder::text_frame(std::size_t size, std::vector<NoitomArrival>& out) {
-  // The text ends with "||", which is no part of the frame.
+  // The text ends with "||", which does not belong to the frame.
   auto frame = parse_noitom_text({reinterpret_cast<const char*>(&held_[at_]), size - 2});
   if (frame) {
     take(size);
@@ -271,13 +275,14 @@ void NoitomDecoder::text_frame(std::size_t size, std::vector<NoitomArrival>& out
 
 void NoitomDecoder::refuse_text(std::string_view text) {
   const NoitomNoFrame what = judge_noitom_text(text);
-  // A receiver that starts within a frame gets only its end, which is no fault.
+  // A receiver that starts in the middle of a frame gets only the frame's end. This is not counted
+  // as a fault.
   const bool first = counts_.frames == 0 && counts_.refused == NoitomCounts{}.refused;
   if (first && what == NoitomNoFrame::numbers) return;
   refuse(what == NoitomNoFrame::other_count ? NoitomRefusal::wrong_count : NoitomRefusal::garbage);
 }
 
-/// Outputs a frame, and counts it for its avatar.
+/// Outputs a frame, and counts its number for its avatar.
 void NoitomDecoder::give(NoitomFrame frame, std::vector<NoitomArrival>& out) {
   if (avatars_.size() == most_avatars && !avatars_.contains(frame.avatar)) {
     refuse(NoitomRefusal::too_many_avatars);

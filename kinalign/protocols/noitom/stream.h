@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decodes the BVH broadcast of Noitom's Axis Neuron and Axis Studio, from one sender's bytes over
-// TCP or in datagrams. Layout and rules: docs/formats/noitom_stream.md.
+// Decodes the BVH broadcast of Noitom's Axis Neuron and Axis Studio. The bytes of one sender arrive
+// over TCP or in datagrams. Layout and rules: docs/formats/noitom_stream.md.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -14,15 +14,15 @@
 
 namespace kinalign {
 
-/// Reasons for recognised data to give no frame.
+/// The reasons why recognised data do not give a frame.
 enum class NoitomRefusal : std::uint8_t {
-  wrong_count,       // a frame by its header and length, but with another number of values
-  garbage,           // the tokens of a header, but no frame
+  wrong_count,       // header and length of a frame, but an unknown number of values
+  garbage,           // the tokens of a header, but not a frame
   incomplete,        // another frame begins before this one is complete
   compressed,        // Axis Studio's compressed port, or the old header's compressed mode
-  calculation,       // the calculation stream
+  calculation,       // a packet of the calculation stream
   command,           // a packet of the command channel
-  too_long,          // text without an end
+  too_long,          // text without its end mark
   too_many_avatars,  // the 65th avatar and later ones
   count_of_refusals  // not a refusal: the number of refusals
 };
@@ -32,7 +32,7 @@ std::string_view to_string(NoitomRefusal refusal);
 struct NoitomCounts {
   std::uint64_t frames = 0;
   std::uint64_t bytes_skipped =
-      0;  // bytes outside of frames and refused headers; blanks after text don't count
+      0;  // bytes outside of frames and refused headers, without blanks after text
   std::array<std::uint64_t, static_cast<std::size_t>(NoitomRefusal::count_of_refusals)> refused{};
 
   std::uint64_t operator[](NoitomRefusal r) const { return refused[static_cast<std::size_t>(r)]; }
@@ -41,58 +41,58 @@ struct NoitomCounts {
 
 struct NoitomArrival {
   NoitomFrame frame;
-  Order order = Order::newest;           // by the source's frame index; always newest without one
-  std::optional<SequencePlace> place{};  // by the same index; absent without one
-  // Arrival of the piece that completed the frame; absent: it was in the bytes that were fed last.
+  Order order = Order::newest;           // by the source's frame index; `newest` if there is none
+  std::optional<SequencePlace> place{};  // by the frame index; empty if there is none
+  // The arrival of the piece that completed the frame. It is empty if that piece was fed last.
   std::optional<HostTime> arrival{};
 };
 
-/// One person of the broadcast. Numbers are counted for each avatar, because the avatars of a
-/// sender usually share the frame numbers.
+/// One person of the broadcast. Frame numbers are counted for each avatar, because the avatars of a
+/// sender usually share the same numbers.
 struct NoitomAvatar {
   std::uint32_t index = 0;
-  std::string name;  // in its latest frame
+  std::string name;  // the name in its latest frame
   std::uint64_t frames = 0;
-  SequenceCount by_index;  // counts incomplete frames too; empty if the source sends no frame index
+  SequenceCount by_index;  // includes incomplete frames; empty if there is no frame index
 };
 
-/// A binary frame whose header has arrived.
+/// The beginning of a binary frame. Its header has arrived, and its values have not all arrived.
 struct NoitomBeginning {
-  std::size_t size = 0;  // bytes of the whole frame, with its header
+  std::size_t size = 0;  // bytes of the whole frame, including its header
   std::uint32_t avatar = 0;
   std::optional<std::uint32_t> index{};  // the source's frame index
 };
 
-/// The parts of a frame that the decoder outputs.
+/// The parts of each frame that the decoder outputs.
 enum class NoitomParts {
   all,
-  heads  // enough for counting: the values of binary frames are skipped
+  heads  // for counting: the values of binary frames are skipped
 };
 
-/// Decodes the bytes of one sender. It recognises the form of every frame by its content.
+/// Decodes the bytes of one sender. It recognises the form of each frame by the frame's content.
 class NoitomDecoder {
  public:
   explicit NoitomDecoder(NoitomParts parts = NoitomParts::all) : parts_(parts) {}
 
-  /// Takes bytes cut anywhere and appends the frames that they complete, including duplicates and
-  /// late ones. The frames don't depend on the cuts.
+  /// Takes bytes that may be cut anywhere. Appends the frames that they complete, including
+  /// duplicates and late frames. The frames do not depend on the cuts.
   void feed(std::span<const std::uint8_t> bytes, std::vector<NoitomArrival>& out);
 
-  /// Gives up the incomplete data: a frame's beginning counts as incomplete and other bytes are
-  /// skipped, except for frames that begin among them.
+  /// Drops the incomplete data. The beginning of a frame counts as incomplete, and other bytes are
+  /// skipped. A complete frame among them is output.
   void give_up(std::vector<NoitomArrival>& out);
-  /// Counts bytes that belong to no frame, without looking at them.
+  /// Counts bytes that belong to no frame, without parsing them.
   void pass_over(std::size_t bytes) { counts_.bytes_skipped += bytes; }
-  /// The incomplete frame whose rest is expected next.
+  /// The incomplete frame that waits for its rest; empty if there is none.
   std::optional<NoitomBeginning> beginning() const;
   bool waits_within_header() const;
 
   const NoitomCounts& counts() const { return counts_; }
   const std::map<std::uint32_t, NoitomAvatar>& avatars() const { return avatars_; }
-  /// Number of bytes that wait for more: never above 20 kB.
+  /// The number of bytes that wait for more bytes, at most 20 kB.
   std::size_t waiting() const { return held_.size() - at_; }
 
-  /// Findings about this stream for the user; `name` appears in the messages.
+  /// The findings about this stream for the user. Messages contain `name`.
   Findings findings(const std::string& name) const;
 
  private:
@@ -115,12 +115,12 @@ class NoitomDecoder {
   void skip(std::size_t bytes);
   void take(std::size_t bytes);
 
-  /// `held_` begins with the first byte that is not decided yet, at `at_`. `feed` drops the decided
-  /// bytes at the end of each slice.
+  /// All bytes of `held_` before `at_` are handled. At the end of each slice, `feed` removes them.
   NoitomParts parts_;
   std::vector<std::uint8_t> held_;
-  std::size_t at_ = 0;        // position in `held_`; the bytes before it are done
-  std::size_t searched_ = 0;  // bytes known to hold no end of a text, or no header after a misfit
+  std::size_t at_ = 0;        // position in `held_`; the bytes before it are handled
+  std::size_t searched_ = 0;  // bytes known to contain no end of a text, or no header after a
+                              // misfit
   /// Blanks that follow a text frame are not counted as skipped.
   bool behind_text_ = false;
   NoitomCounts counts_;

@@ -23,8 +23,8 @@ std::vector<std::string_view> words_of(std::string_view text) {
   return words;
 }
 
-// Reads a whole word as a number, with an optional plus sign. Infinity and NaN are refused: their
-// difference from themselves is not 0.
+// Reads a whole word as a number, with an optional plus sign. Infinity and NaN are refused; unlike
+// for all other numbers, their difference from themselves is not 0.
 template <class Number>
 bool read(std::string_view word, Number& value) {
   if (word.starts_with('+')) word.remove_prefix(1);
@@ -33,7 +33,7 @@ bool read(std::string_view word, Number& value) {
   return fault == std::errc{} && behind == end && value - value == Number{0};
 }
 
-/// The frame made of exactly these words; empty if one of them has the wrong form.
+/// The frame that consists of exactly these words; empty if a word has the wrong form.
 std::optional<NoitomFrame> frame_of(std::span<const std::string_view> words) {
   NoitomFrame frame;
   frame.form = NoitomForm::text;
@@ -50,8 +50,8 @@ std::optional<NoitomFrame> frame_of(std::span<const std::string_view> words) {
 
 }  // namespace
 
-// The number of values shows whether displacement and reference are included. The frame is at the
-// end of the text: words in front of it belong to a frame that has lost its end.
+// The number of values shows whether displacement and reference are included. The frame stands at
+// the end of the text. Words in front of it belong to a frame whose end was lost.
 std::optional<NoitomFrame> parse_noitom_text(std::string_view text) {
   const auto words = words_of(text);
   for (const bool displacement : {true, false}) {
@@ -60,7 +60,7 @@ std::optional<NoitomFrame> parse_noitom_text(std::string_view text) {
       if (words.size() < size) continue;
       const auto last = std::span(words).last(size);
       float number = 0.0F;
-      // If other words come first, a number in the name's place is one of their values.
+      // If other words come first, a number in the place of the name is a value of such a frame.
       if (words.size() > size && read(last[1], number)) continue;
       auto frame = frame_of(last);
       if (!frame) continue;
@@ -72,8 +72,8 @@ std::optional<NoitomFrame> parse_noitom_text(std::string_view text) {
   return std::nullopt;
 }
 
-// Counts the numbers at the end of the text. The word before them should be an avatar's name, and
-// the word before that its index.
+// Counts the numbers at the end of the text. In a frame, the name of the avatar stands before the
+// numbers, and the avatar's index before the name.
 NoitomNoFrame judge_noitom_text(std::string_view text) {
   const auto words = words_of(text);
   float number = 0.0F;
@@ -81,7 +81,7 @@ NoitomNoFrame judge_noitom_text(std::string_view text) {
                                  [&](std::string_view word) { return !read(word, number); });
   if (name == words.rend()) return NoitomNoFrame::numbers;
   const auto values = static_cast<std::size_t>(name - words.rbegin());
-  // Positions and rotations have three values each.
+  // Each position and each rotation has three values.
   if (values == 0 || values % 3 != 0 || values + 2 > words.size()) return NoitomNoFrame::other;
   const bool begins = frame_of(std::span(words).last(values + 2)).has_value();
   return begins ? NoitomNoFrame::other_count : NoitomNoFrame::other;

@@ -8,12 +8,12 @@
 
 namespace kinalign {
 
-/// Parses the frame at the end of `text`, which reaches to its "||". Words in front of it are
-/// skipped: they belong to a frame that has lost its end. Empty if the text does not end in a frame
-/// with one of the four counts of values.
+/// Parses the frame at the end of `text`, which ends with "||". Words in front of the frame are
+/// skipped, because they belong to a frame whose end was lost. The result is empty if the text does
+/// not end in a frame with one of the four counts of values.
 std::optional<NoitomFrame> parse_noitom_text(std::string_view text);
 
-/// Kinds of text that are no frame.
+/// The kinds of text that are not a frame.
 enum class NoitomNoFrame : std::uint8_t {
   other_count,  // a frame `<index> <name> v v ...` with another number of values
   numbers,      // only numbers: the end of a frame whose beginning is missing

@@ -17,7 +17,7 @@ void append_noitom(const NoitomFrame& f, std::vector<std::uint8_t>& out) {
   assert(f.values.size() == noitom_values(f.displacement, f.reference));
   constexpr std::size_t name_field = 32;
   append_little(std::uint16_t{0xddff}, out);
-  append_little(std::uint32_t{0x01010000}, out);  // 1.1.0.0
+  append_little(std::uint32_t{0x01010000}, out);  // the version, 1.1.0.0
   append_little(static_cast<std::uint16_t>(f.values.size()), out);
   append_little(std::uint8_t{f.displacement}, out);
   append_little(std::uint8_t{f.reference}, out);

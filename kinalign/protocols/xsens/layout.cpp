@@ -9,13 +9,13 @@ namespace kinalign {
 
 namespace {
 
-// Bytes of an item: docs/formats/xsens_mvn_stream.md. The specification describes tracker items of
-// 44 bytes; MVN also sends 68.
+// The sizes of items in bytes: docs/formats/xsens_mvn_stream.md. The specification describes
+// tracker items of 44 bytes, but MVN also sends items of 68 bytes.
 constexpr std::size_t pose_item = 32, tracker_item = 44, raw_tracker_item = 68, time_code = 12;
 
 bool is_digit(std::uint8_t b) { return b >= '0' && b <= '9'; }
 
-// The readers of items expect a payload whose size was checked: `items` times the size of one.
+// Functions that read items expect a payload of the right size: `items` times the size of an item.
 XsensPose pose_of(ByteReader bytes, std::size_t items) {
   XsensPose pose;
   for (std::size_t k = 0; k < items; ++k) {
@@ -28,7 +28,7 @@ XsensPose pose_of(ByteReader bytes, std::size_t items) {
   return pose;
 }
 
-/// Reads tracker items. `raw`: the long form, which also has raw measurements.
+/// Reads tracker items. `raw`: the items have the long form, which includes raw measurements.
 XsensTrackers trackers_of(ByteReader bytes, std::size_t items, bool raw) {
   XsensTrackers all;
   for (std::size_t k = 0; k < items; ++k) {
@@ -46,7 +46,7 @@ XsensTrackers trackers_of(ByteReader bytes, std::size_t items, bool raw) {
   return all;
 }
 
-/// Parses "HH:MM:SS.mmm".
+/// Parses a time of day in the form "HH:MM:SS.mmm".
 std::optional<XsensTimeCode> time_code_of(std::span<const std::uint8_t> text) {
   constexpr std::string_view form = "dd:dd:dd.ddd";
   for (std::size_t k = 0; k < form.size(); ++k) {
@@ -61,7 +61,7 @@ std::optional<XsensTimeCode> time_code_of(std::span<const std::uint8_t> text) {
                        std::chrono::seconds(whole) + std::chrono::milliseconds(ms)};
 }
 
-/// Parses a time code with or without its length in front.
+/// Parses a time code. Its length may stand in front of it.
 std::optional<XsensTimeCode> any_time_code(std::span<const std::uint8_t> payload) {
   if (payload.size() == time_code) return time_code_of(payload);
   if (payload.size() != time_code + 4) return std::nullopt;
@@ -76,7 +76,7 @@ bool begins_xsens_header(std::span<const std::uint8_t> b) {
          is_digit(b[4]) && is_digit(b[5]);
 }
 
-// Needed for types that are not read, too: a sender before 2019 states no payload size, so these
+// The sizes of other types are needed, too. A sender before 2019 states no payload size, so these
 // datagrams can be skipped only by the size of their items.
 std::size_t xsens_item_size(unsigned type) {
   switch (type) {
@@ -107,11 +107,11 @@ std::size_t xsens_item_size(unsigned type) {
 
 XsensHeader parse_xsens_header(std::span<const std::uint8_t> bytes) {
   XsensHeader h;
-  // The magic "MXTP" was checked by the caller; two digits of the type follow it.
+  // The caller has checked the magic "MXTP". Two digits of the type follow it.
   h.type = static_cast<unsigned>((bytes[4] - '0') * 10 + (bytes[5] - '0'));
   ByteReader fields(bytes.subspan(6));
   h.counter = fields.take<std::uint32_t>();
-  // Bit 7 marks the sample's last datagram, the lower bits number the datagrams.
+  // Bit 7 marks the last datagram of the sample. The lower bits number the datagrams.
   const auto datagram = fields.take<std::uint8_t>();
   h.index = datagram & 0x7f;
   h.last = (datagram & 0x80) != 0;
@@ -121,15 +121,15 @@ XsensHeader parse_xsens_header(std::span<const std::uint8_t> bytes) {
   h.body_segments = fields.take<std::uint8_t>();
   h.props = fields.take<std::uint8_t>();
   h.finger_segments = fields.take<std::uint8_t>();
-  // Two reserved bytes.
+  // Two reserved bytes are skipped.
   fields.take<std::uint16_t>();
   h.payload = fields.take<std::uint16_t>();
   if (h.payload == 0) h.payload = xsens_item_size(h.type) * h.items;
   return h;
 }
 
-// Two forms of type 23 differ only in the size of the payload. Type 25 does not use the number of
-// items.
+// Type 23 has two forms, which differ only in the size of the payload. Type 25 does not use the
+// number of items.
 std::optional<XsensItems> parse_xsens_items(const XsensHeader& header,
                                             std::span<const std::uint8_t> payload) {
   const std::size_t items = header.items;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The content of Xsens MVN's network stream, in its own axes and units: z up, quaternions w,x,y,z.
+// The content of Xsens MVN's network stream in MVN's own axes and units: z up, quaternions w,x,y,z.
 // Layout: docs/formats/xsens_mvn_stream.md.
 #pragma once
 
@@ -13,11 +13,11 @@
 
 namespace kinalign {
 
-/// A segment, a prop or a finger of a character.
-/// Values are as sent: z up. `recording/streams` converts them to y up.
+/// A segment, a prop or a finger of a character. The values are as sent, with z up.
+/// `recording/streams` converts them to y up.
 struct XsensSegment {
   std::int32_t id = 0;              // 1 Pelvis to 23 LeftToe; higher numbers are props and fingers
-  std::array<float, 3> position{};  // metres or centimetres: XsensPoser decides
+  std::array<float, 3> position{};  // m or cm; XsensPoser finds out which
   std::array<float, 4> rotation{};  // world_from_segment
 
   bool operator==(const XsensSegment&) const = default;
@@ -37,13 +37,14 @@ struct XsensRaw {
   bool operator==(const XsensRaw&) const = default;
 };
 
-/// An inertial sensor on a segment: fused values, and raw ones if the sender adds them.
+/// An inertial sensor on a segment. It has fused values, and raw values if the sender includes
+/// them.
 struct XsensTracker {
-  std::int32_t id = 0;                       // number of the segment to which it is fixed
+  std::int32_t id = 0;                       // number of the segment that carries the sensor
   std::array<float, 4> rotation{};           // world_from_sensor
   std::array<float, 3> free_acceleration{};  // m/s2 in the world, without gravity
-  std::optional<XsensRaw> raw;               // only in items of 68 bytes
-  std::array<float, 3> magnetic_field{};     // in any unit
+  std::optional<XsensRaw> raw;               // only in the long items of 68 bytes
+  std::array<float, 3> magnetic_field{};     // in the sender's unit
 
   bool operator==(const XsensTracker&) const = default;
 };
@@ -54,7 +55,7 @@ struct XsensTrackers {  // type 23
   bool operator==(const XsensTrackers&) const = default;
 };
 
-/// The sender's time of day. It has no date.
+/// The sender's time of day, without a date.
 struct XsensTimeCode {     // type 25
   Duration time_of_day{};  // since midnight, in whole milliseconds
 
@@ -63,12 +64,12 @@ struct XsensTimeCode {     // type 25
 
 using XsensItems = std::variant<XsensPose, XsensTrackers, XsensTimeCode>;
 
-/// All items of one type at one instant, joined from one or more datagrams.
+/// All items of one type at one instant. Several datagrams may contribute to a sample.
 struct XsensSample {
   std::uint32_t counter = 0;       // number of the sample
-  std::uint32_t time_code_ms = 0;  // since the start of the recording
+  std::uint32_t time_code_ms = 0;  // ms since the start of the recording
   std::uint8_t character = 0;
-  std::uint8_t body_segments = 0;  // 23; 0 before MVN 2019
+  std::uint8_t body_segments = 0;  // 23; 0 in MVN before 2019
   std::uint8_t props = 0;
   std::uint8_t finger_segments = 0;
   XsensItems body;

@@ -10,19 +10,20 @@ namespace kinalign {
 
 namespace {
 
-// Bytes taken at once. The buffer holds at most one incomplete datagram and one slice, however long
-// the piece is that was fed.
+// The bytes that are handled at once. The buffer therefore contains at most one incomplete datagram
+// and one slice, even if the caller passes a long piece.
 constexpr std::size_t slice = 4096;
 constexpr std::size_t marker = 6;          // "MXTP02"
 constexpr std::size_t most_channels = 48;  // 16 characters of three types
-// Incomplete samples that a channel keeps. If one more begins, the oldest is dropped.
+// A channel keeps at most this many incomplete samples. If another sample begins, the oldest one is
+// dropped.
 constexpr std::size_t most_parts = 4;
 
-// Pose, trackers and time code. Other types are counted and skipped.
+// Only poses, trackers and time codes are read. Other types are counted and skipped.
 bool is_read(unsigned type) { return type == 2 || type == 23 || type == 25; }
 
-// True for trackers of the long form. All trackers of a datagram have one form, so the first shows
-// it.
+// True if the trackers have the long form. All trackers of a datagram have the same form, so the
+// first tracker is enough.
 bool is_raw(const XsensSample& sample) {
   const auto* trackers = std::get_if<XsensTrackers>(&sample.body);
   return trackers != nullptr && trackers->trackers[0].raw.has_value();
@@ -56,8 +57,8 @@ std::string_view to_string(XsensRefusal refusal) {
   return names[static_cast<std::size_t>(refusal)];
 }
 
-// Connections and datagrams take the same way. Each slice is decoded as far as possible before the
-// next one is copied.
+// Connections and datagrams are decoded in the same way. Each slice is decoded as far as possible
+// before the next slice is copied.
 void XsensDecoder::feed(std::span<const std::uint8_t> bytes, std::vector<XsensArrival>& out) {
   while (!bytes.empty()) {
     const auto piece = bytes.first(std::min(slice, bytes.size()));
@@ -75,7 +76,7 @@ void XsensDecoder::take(std::size_t bytes) {
   searched_ = 0;
 }
 
-// Handles the data at the front. False if more bytes are needed.
+// Handles the data at the front. Returns false if more bytes are needed.
 bool XsensDecoder::step(std::vector<XsensArrival>& out) {
   const auto bytes = ahead();
   if (bytes.size() < marker) return false;
@@ -84,8 +85,8 @@ bool XsensDecoder::step(std::vector<XsensArrival>& out) {
     take(1);
     return true;
   }
-  // A header that is cut by another datagram states no valid size, so this is checked before the
-  // size is read.
+  // If another datagram begins within a header, the header's size is not valid. This is therefore
+  // checked before the size is read.
   if (skip_interrupted(xsens_header_size)) return true;
   if (bytes.size() < xsens_header_size) return false;
   const XsensHeader header = parse_xsens_header(bytes);
@@ -94,7 +95,7 @@ bool XsensDecoder::step(std::vector<XsensArrival>& out) {
   if (bytes.size() < size) return false;
   if (is_read(header.type)) {
     auto items = parse_xsens_items(header, bytes.subspan(xsens_header_size, header.payload));
-    if (!items) {  // the header's size is not trusted either
+    if (!items) {  // the header's size may be wrong, too
       refuse(XsensRefusal::wrong_size);
       counts_.bytes_skipped += marker;
       take(marker);
@@ -108,8 +109,8 @@ bool XsensDecoder::step(std::vector<XsensArrival>& out) {
   return true;
 }
 
-// Skips the datagram at the front if another one begins within its next `size` bytes, as far as
-// they have arrived.
+// Skips the datagram at the front if another datagram begins within its next `size` bytes. Only
+// bytes that have arrived are checked.
 bool XsensDecoder::skip_interrupted(std::size_t size) {
   const auto bytes = ahead();
   const std::size_t end = std::min(size, bytes.size());
@@ -125,7 +126,7 @@ bool XsensDecoder::skip_interrupted(std::size_t size) {
   return false;
 }
 
-// Most samples have one datagram, which needs no joining.
+// Most samples consist of one datagram and need no joining.
 void XsensDecoder::datagram(const XsensHeader& header, XsensItems items,
                             std::vector<XsensArrival>& out) {
   Channel* channel = channel_of(header);
@@ -136,8 +137,7 @@ void XsensDecoder::datagram(const XsensHeader& header, XsensItems items,
   join(*channel, header, std::move(sample), out);
 }
 
-// The channels of a sender are limited, because a damaged or hostile datagram may state any
-// character.
+// The number of channels is limited, because a damaged or hostile datagram may name any character.
 XsensDecoder::Channel* XsensDecoder::channel_of(const XsensHeader& header) {
   const XsensChannel key{header.character, header.type};
   if (channels_.size() == most_channels && !channels_.contains(key)) return nullptr;
@@ -147,21 +147,21 @@ XsensDecoder::Channel* XsensDecoder::channel_of(const XsensHeader& header) {
 /// Adds a datagram to its sample and outputs the sample once it is complete.
 void XsensDecoder::join(Channel& channel, const XsensHeader& header, XsensSample piece,
                         std::vector<XsensArrival>& out) {
-  // A sample that was output is no longer among the incomplete ones. Without this check a repeated
-  // datagram would begin it again.
+  // A sample that was output is not in the list of incomplete samples. Without this check, a
+  // repeated datagram would begin the sample again.
   if (channel.joined == header.counter) return refuse(XsensRefusal::repeated);
   Part& part = part_of(channel, header.counter);
   if (part.pieces.contains(header.index)) return refuse(XsensRefusal::repeated);
   if (part.items + header.items > most_xsens_items) return refuse(XsensRefusal::too_many_items);
-  // Trackers with and without raw values can't stand in one sample.
+  // A sample can't contain both trackers with raw values and trackers without.
   if (!part.pieces.empty() && is_raw(part.pieces.begin()->second) != is_raw(piece)) {
     return refuse(XsensRefusal::wrong_size);
   }
   part.items += header.items;
   if (header.last) part.last = header.index;
   part.pieces.emplace(header.index, std::move(piece));
-  // The numbers are all different. If there are as many as the last number says, and none is
-  // higher, the sample is complete.
+  // All pieces have different numbers. If there are as many pieces as the last number requires, and
+  // no number is higher, the sample is complete.
   const bool whole = part.last && part.pieces.size() == *part.last + 1U &&
                      part.pieces.rbegin()->first == *part.last;
   if (!whole) return;
@@ -174,7 +174,8 @@ void XsensDecoder::join(Channel& channel, const XsensHeader& header, XsensSample
   give(channel, std::move(sample), out);
 }
 
-/// The incomplete sample with this counter. Drops the oldest one if there are too many.
+/// The incomplete sample with this counter. If there are too many incomplete samples, the oldest
+/// one is dropped.
 XsensDecoder::Part& XsensDecoder::part_of(Channel& channel, std::uint32_t counter) {
   for (auto& [known, part] : channel.parts) {
     if (known == counter) return part;
@@ -186,8 +187,8 @@ XsensDecoder::Part& XsensDecoder::part_of(Channel& channel, std::uint32_t counte
   return channel.parts.emplace_back(counter, Part{}).second;
 }
 
-// Samples are output in the order in which they became complete. `order` tells the caller which of
-// them are late.
+// Samples are output in the order in which they became complete. `order` tells the caller which
+// samples are late.
 void XsensDecoder::give(Channel& channel, XsensSample sample, std::vector<XsensArrival>& out) {
   const Order order = channel.by_counter.push(sample.counter);
   ++counts_.samples;
@@ -200,7 +201,7 @@ std::map<XsensChannel, SequenceCounts> XsensDecoder::channels() const {
   return all;
 }
 
-// One warning per kind of refusal, one note per type that was skipped.
+// Makes one warning for each kind of refusal, and one note for each skipped type.
 Findings XsensDecoder::findings(const std::string& name) const {
   Findings findings;
   for (std::size_t k = 0; k < names.size(); ++k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decodes the network stream of Xsens MVN, from one sender's bytes over TCP or in datagrams. Layout
-// and rules: docs/formats/xsens_mvn_stream.md.
+// Decodes the network stream of Xsens MVN. The bytes of one sender arrive over TCP or in datagrams.
+// Layout and rules: docs/formats/xsens_mvn_stream.md.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -14,13 +14,13 @@
 
 namespace kinalign {
 
-/// Reasons for a datagram, or a sample of several datagrams, to be dropped.
+/// The reasons to drop a datagram, or a sample of several datagrams.
 enum class XsensRefusal : std::uint8_t {
-  wrong_size,      // the payload does not fit the type and the number of items
-  interrupted,     // another datagram begins before this one is complete
-  incomplete,      // a sample of which some datagrams did not arrive
-  repeated,        // a datagram of a sample that was output, or a datagram that is kept already
-  too_many_items,  // more than 256 in a sample
+  wrong_size,           // the payload does not fit the type and the number of items
+  interrupted,          // another datagram begins before this one is complete
+  incomplete,           // some datagrams of a sample did not arrive
+  repeated,             // a datagram of a sample that was output, or a datagram that arrived before
+  too_many_items,       // more than 256 in a sample
   too_many_characters,  // the 17th character and later ones
   count_of_refusals     // not a refusal: the number of refusals
 };
@@ -29,22 +29,24 @@ std::string_view to_string(XsensRefusal refusal);
 
 struct XsensCounts {
   std::uint64_t samples = 0;        // samples that were output
-  std::uint64_t bytes_skipped = 0;  // bytes outside of datagrams
+  std::uint64_t bytes_skipped = 0;  // bytes that belong to no datagram
   std::array<std::uint64_t, static_cast<std::size_t>(XsensRefusal::count_of_refusals)> refused{};
-  std::array<std::uint64_t, 100> other_types{};  // datagrams of types that are not read, by type
+  std::array<std::uint64_t, 100> other_types{};  // datagrams of types that are not read; the index
+                                                 // is the type
 
   std::uint64_t operator[](XsensRefusal r) const { return refused[static_cast<std::size_t>(r)]; }
   bool operator==(const XsensCounts&) const = default;
 };
 
-/// A complete sample. Duplicates and late samples are included; the caller decides about them.
+/// A complete sample. Duplicates and late samples are included, so that the caller can decide about
+/// them.
 struct XsensArrival {
   XsensSample sample;
   Order order = Order::newest;  // among the samples of its character and type
   SequencePlace place{};        // among the same samples
 };
 
-/// A character's samples of one type.
+/// Identifies the samples of one type of one character.
 struct XsensChannel {
   std::uint8_t character = 0;
   unsigned type = 0;
@@ -52,28 +54,27 @@ struct XsensChannel {
   auto operator<=>(const XsensChannel&) const = default;
 };
 
-/// Decodes the bytes of one sender.
-/// Connections and datagrams are decoded in the same way, because the size of each datagram follows
-/// from its header.
+/// Decodes the bytes of one sender. Connections and datagrams are decoded in the same way, because
+/// each header determines the size of its datagram.
 class XsensDecoder {
  public:
-  /// Takes bytes cut anywhere and appends the samples that they complete, including duplicates and
-  /// late ones. The samples don't depend on the cuts.
+  /// Takes bytes that may be cut anywhere. Appends the samples that they complete, including
+  /// duplicates and late samples. The samples do not depend on the cuts.
   void feed(std::span<const std::uint8_t> bytes, std::vector<XsensArrival>& out);
 
   const XsensCounts& counts() const { return counts_; }
-  /// Lost, late and duplicate samples by the sample counter.
+  /// The counts of lost, late and duplicate samples, by the sample counter.
   std::map<XsensChannel, SequenceCounts> channels() const;
-  /// Number of bytes that wait for more: never above 70 kB. In addition at most four incomplete
-  /// samples of 256 items are kept for each of 48 channels.
+  /// The number of bytes that wait for more bytes, at most 70 kB. Each of up to 48 channels keeps
+  /// at most four incomplete samples of 256 items in addition.
   std::size_t waiting() const { return held_.size() - at_; }
 
-  /// Findings about this stream for the user; `name` appears in the messages.
+  /// The findings about this stream for the user. Messages contain `name`.
   Findings findings(const std::string& name) const;
 
  private:
-  /// A sample of several datagrams that is not complete yet.
-  /// The sample is complete when all datagrams from 0 to `last` are there.
+  /// A sample of several datagrams that is not complete yet. It is complete when all datagrams from
+  /// 0 to `last` have arrived.
   struct Part {
     std::size_t items = 0;
     std::map<unsigned, XsensSample> pieces;  // by the datagram's number within the sample
@@ -82,17 +83,18 @@ class XsensDecoder {
   struct Channel {
     SequenceCount by_counter;
     std::deque<std::pair<std::uint32_t, Part>> parts;  // by sample counter, oldest first
-    /// Number of the latest sample that was joined from several datagrams.
+    /// The number of the latest sample that was joined from several datagrams.
     std::optional<std::uint32_t> joined;
   };
 
   std::span<const std::uint8_t> ahead() const { return std::span(held_).subspan(at_); }
-  /// Handles what is at the front: a datagram, or a byte that is skipped. False: more bytes are
-  /// needed.
+  /// Handles the front of the buffer: a datagram, or a byte that is skipped. Returns false if more
+  /// bytes are needed.
   bool step(std::vector<XsensArrival>& out);
-  /// True if another datagram began within this one, which was then skipped.
+  /// Returns true if another datagram began within this one. This datagram is then skipped.
   bool skip_interrupted(std::size_t size);
-  /// Handles a complete datagram: outputs its sample, or joins it with others.
+  /// Handles a complete datagram. Outputs its sample, or joins it with other datagrams of the
+  /// sample.
   void datagram(const XsensHeader& header, XsensItems items, std::vector<XsensArrival>& out);
   void join(Channel& channel, const XsensHeader& header, XsensSample piece,
             std::vector<XsensArrival>& out);
@@ -102,11 +104,11 @@ class XsensDecoder {
   void refuse(XsensRefusal refusal) { ++counts_.refused[static_cast<std::size_t>(refusal)]; }
   void take(std::size_t bytes);
 
-  /// Bytes before `at_` are decided and are dropped at the end of each slice. Everything about
-  /// samples of several datagrams is in `channels_`.
+  /// All bytes of `held_` before `at_` are handled. They are removed at the end of each slice.
+  /// `channels_` keeps the incomplete samples.
   std::vector<std::uint8_t> held_;
-  std::size_t at_ = 0;        // position in `held_`; the bytes before it are done
-  std::size_t searched_ = 0;  // bytes of the datagram in which no other datagram begins
+  std::size_t at_ = 0;        // position in `held_`; the bytes before it are handled
+  std::size_t searched_ = 0;  // bytes of the datagram that were searched for another datagram
   XsensCounts counts_;
   std::map<XsensChannel, Channel> channels_;
 };
