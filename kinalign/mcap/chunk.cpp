@@ -13,20 +13,21 @@ namespace kinalign {
 namespace {
 
 constexpr int zstd_level = 1;
-constexpr std::uint64_t most_reserved = 16 << 20;  // bytes reserved before decompression
+constexpr std::uint64_t most_reserved = 16 << 20;  // limit on memory reserved before decompression,
+                                                   // bytes
 
 std::string compressed(std::string_view bytes) {
-  // The bound makes a second call with more room unnecessary.
+  // The buffer has the largest possible size, so a single call is enough.
   std::string out(ZSTD_compressBound(bytes.size()), '\0');
   const std::size_t size =
       ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), zstd_level);
-  out.resize(ZSTD_isError(size) != 0 ? 0 : size);  // the only possible error is a lack of memory
+  out.resize(ZSTD_isError(size) != 0 ? 0 : size);  // the call can only fail without memory
   return out;
 }
 
-/// Decompresses `stored` as far as it is complete. Stops soon after `most` bytes.
-/// The stream is decompressed block by block, so that a truncated one gives its beginning, and so
-/// that a small file can't demand much memory.
+/// Decompresses as much of `stored` as is complete. Stops soon after `most` bytes. The stream is
+/// decompressed block by block. A truncated stream therefore gives its beginning, and a small file
+/// can't demand much memory.
 std::string decompressed(std::string_view stored, std::uint64_t most) {
   std::string records;
   const std::unique_ptr<ZSTD_DStream, decltype(&ZSTD_freeDStream)> stream(ZSTD_createDStream(),
@@ -34,7 +35,7 @@ std::string decompressed(std::string_view stored, std::uint64_t most) {
   if (stream == nullptr) return records;
   ZSTD_inBuffer in{stored.data(), stored.size(), 0};
   std::string block(ZSTD_DStreamOutSize(), '\0');
-  // the file claims `most`, so it may be wrong
+  // `most` comes from the file and may be wrong, so little memory is reserved in advance.
   records.reserve(std::min<std::uint64_t>(most, most_reserved));
   // ZSTD_decompressStream() returns 0 at the end of a frame.
   for (std::size_t more = 1; more != 0 && records.size() <= most;) {
@@ -43,7 +44,7 @@ std::string decompressed(std::string_view stored, std::uint64_t most) {
     more = ZSTD_decompressStream(stream.get(), &out, &in);
     if (ZSTD_isError(more) != 0) break;
     records.append(block, 0, out.pos);
-    // Neither input was used nor output made: the stream is truncated.
+    // If the call uses no input and makes no output, the stream is truncated.
     if (out.pos == 0 && in.pos == had) break;
   }
   return records;
@@ -61,7 +62,7 @@ Failure misfit(const McapChunkHead& head, std::uint64_t size) {
 }  // namespace
 
 void McapChunkContent::add(const McapSchema& schema) {
-  // A definition that is added again overwrites the entry, but its record is written again.
+  // If a definition is added again, the entry is replaced and its record is written again.
   definitions_.schemas.insert_or_assign(schema.id, schema);
   append_mcap(records_, schema);
 }
@@ -74,14 +75,14 @@ void McapChunkContent::add(const McapChannel& channel) {
 void McapChunkContent::add(const McapMessage& message) {
   start_ = empty() ? message.log_time : std::min(start_, message.log_time);
   end_ = std::max(end_, message.log_time);
-  // The offset counts within the chunk, before compression.
+  // The offset is a position within the uncompressed chunk.
   messages_[message.channel].push_back({message.log_time, records_.size()});
   append_mcap(records_, message);
 }
 
 namespace {
 
-/// An upper limit on the bytes of a chunk and its indexes.
+/// An upper limit on the bytes of a chunk and its message indexes.
 std::size_t room_for(std::string_view stored, const McapChunkContent& content) {
   constexpr std::size_t heads = 128;  // bytes of the head of a chunk or of an index
   std::size_t room = stored.size() + heads;
@@ -93,8 +94,8 @@ std::size_t room_for(std::string_view stored, const McapChunkContent& content) {
 
 }  // namespace
 
-// Compressed records that cannot be made, for lack of memory, are stored uncompressed.
-// Offsets in the index count from the chunk's first byte. The writer adds the chunk's position.
+// If compression fails for lack of memory, the records are stored uncompressed. Offsets in the
+// index count from the chunk's first byte. The writer adds the chunk's position in the file.
 McapStoredChunk store(const McapChunkContent& content, McapCompression compression) {
   const std::string_view records = content.records();
   const std::string packed =
@@ -111,7 +112,8 @@ McapStoredChunk store(const McapChunkContent& content, McapCompression compressi
   chunk.index = {
       head.start,    head.end,      0, chunk.bytes.size(), {}, 0, std::string(head.compression),
       stored.size(), records.size()};
-  // Readers find the messages of one channel by these indexes, without decompressing other chunks.
+  // With these indexes, readers find the messages of one channel without decompressing other
+  // chunks.
   for (const auto& [channel, entries] : content.messages()) {
     chunk.index.message_index_offsets[channel] = chunk.bytes.size();
     chunk.channel_messages[channel] = entries.size();
@@ -125,7 +127,7 @@ McapStoredChunk store(const McapChunkContent& content, McapCompression compressi
 Result<std::string> unpack(const McapChunkView& chunk, std::uint64_t most) {
   const McapChunkHead& head = chunk.head;
   if (!chunk.whole()) return unfit("a whole chunk", "its beginning");
-  // The stated size decides on memory, so it is checked first.
+  // The stated size determines the memory, so it is checked first.
   if (head.uncompressed_size > most) {
     return unfit("a chunk of at most " + std::to_string(most >> 20) + " MiB",
                  std::to_string(head.uncompressed_size >> 20) + " MiB");
@@ -137,7 +139,7 @@ Result<std::string> unpack(const McapChunkView& chunk, std::uint64_t most) {
     return misfit(head, chunk.stored_size);  // checked before the records are copied
   }
   std::string records = unpack_truncated(chunk, most);
-  // A zstd stream may end early or hold more than the head states.
+  // A zstd stream may contain fewer or more bytes than the head states.
   if (records.size() != head.uncompressed_size) return misfit(head, records.size());
   if (head.uncompressed_crc != 0 && head.uncompressed_crc != crc_of(records)) {
     return unfit("a chunk with a correct checksum", "another one");
@@ -146,7 +148,7 @@ Result<std::string> unpack(const McapChunkView& chunk, std::uint64_t most) {
 }
 
 std::string unpack_truncated(const McapChunkView& chunk, std::uint64_t most) {
-  // A truncated chunk has no checksum that could be compared.
+  // The checksum of a truncated chunk can't be compared, because part of the data is missing.
   most = std::min(most, chunk.head.uncompressed_size);
   if (chunk.head.compression == "zstd") return decompressed(chunk.stored, most);
   return std::string(chunk.head.compression.empty() ? chunk.stored : std::string_view());

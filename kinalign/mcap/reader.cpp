@@ -12,13 +12,13 @@ namespace {
 
 constexpr std::size_t most_findings = 200;
 
-// The head of a chunk with the longest name of a compression that find_chunk() accepts, "zstd".
+// The size of a chunk's head with the name "zstd", the longest name that find_chunk() accepts.
 constexpr std::size_t longest_chunk_head = mcap_record_head + McapChunkView::fields + 4;
 
 }  // namespace
 
 void McapReader::feed(std::string_view piece) {
-  // After the last state all further bytes are ignored.
+  // In the states after after_footer the reader is finished and ignores further bytes.
   if (state_ > State::after_footer) return;
   buffer_.erase(0, taken_);
   taken_ = 0;
@@ -37,38 +37,38 @@ void McapReader::skip(std::size_t size) {
 
 void McapReader::report(Severity severity, std::string expected, std::string found,
                         std::string meaning) {
-  // A badly damaged file would otherwise give one finding for every few bytes.
+  // The limit is needed, because a badly damaged file would give one finding for every few bytes.
   if (findings_.size() >= most_findings) return;
   found += " at byte " + std::to_string(offset_);
   findings_.push_back(
       {severity, {"", 0, std::move(expected), std::move(found)}, std::move(meaning), ""});
 }
 
-/// Reports that no record is at this position. Reading continues at the next chunk.
+/// Reports that no valid record is at this position. Reading continues at the next chunk.
 void McapReader::report_damage(std::string expected, std::string found) {
   report(Severity::error, std::move(expected), std::move(found),
          "what stands there is left out, up to the next whole chunk");
   state_ = State::lost;
-  // The checksum of the section would be wrong because of the skipped bytes.
+  // The checksum of the section can't be compared any more, because bytes are skipped.
   crc_counts_ = false;
-  // One byte is enough: find_chunk() looks at every later position.
+  // Skipping one byte is enough, because find_chunk() tries every later position.
   skip(1);
 }
 
 std::optional<McapRecord> McapReader::next() {
-  // Records of an open chunk come before those that follow it in the file.
+  // The records of the open chunk come before the records that follow the chunk in the file.
   if (auto record = next_in_chunk()) return record;
   return next_in_file();
 }
 
 std::optional<McapRecord> McapReader::next_in_chunk() {
-  // A record that is damaged inside of a chunk is left out alone, because its length leads to the
-  // next one.
+  // Only the damaged record of a chunk is left out, because its length gives the position of the
+  // next record.
   while (chunk_taken_ < chunk_.size()) {
     const std::string_view bytes = std::string_view(chunk_).substr(chunk_taken_);
     const auto head = decode_mcap_head(bytes);
     const bool whole = head && head->length <= bytes.size() - mcap_record_head;
-    // In a truncated chunk this is the expected end.
+    // A truncated chunk always ends within a record, so this is not reported.
     if (!whole && in_truncated_chunk_) break;
     std::optional<McapRecord> record;
     const bool fits = whole && take(head->op, bytes.substr(mcap_record_head, head->length), record);
@@ -79,7 +79,7 @@ std::optional<McapRecord> McapReader::next_in_chunk() {
     }
     if (!fits && ends) break;
     chunk_taken_ += mcap_record_head + head->length;
-    // Records without use for readers are passed over.
+    // Records that readers do not need are skipped.
     if (record) return record;
   }
   chunk_.clear();
@@ -87,12 +87,12 @@ std::optional<McapRecord> McapReader::next_in_chunk() {
   return std::nullopt;
 }
 
-/// Decodes a record. Returns whether the content is valid. `record` stays empty if readers do not
+/// Decodes a record. Returns true if the content is valid. `record` stays empty if readers do not
 /// need the record.
 bool McapReader::take(McapOp op, std::string_view content, std::optional<McapRecord>& record) {
-  // Readers of this program do not use message indexes, but a wrong one shows damage.
+  // kinalign does not use message indexes, but an invalid one shows that the file is damaged.
   if (op == McapOp::message_index) {
-    // bytes to skip after the known fields; files seen so far have 3 at most
+    // Bytes that may follow the known fields. Files that were seen have at most 3.
     constexpr std::size_t padding = 64;
     LittleEndianReader from(octets(content));
     from.take<std::uint16_t>();
@@ -108,7 +108,7 @@ bool McapReader::take(McapOp op, std::string_view content, std::optional<McapRec
 /// Checks the magic bytes at the beginning of the file.
 void McapReader::start() {
   const std::string_view bytes = rest();
-  // Fewer than eight bytes can be a beginning of the magic; then more bytes are needed.
+  // Fewer than eight bytes may be the beginning of the magic, so more bytes are needed.
   const std::size_t some = std::min(bytes.size(), mcap_magic.size());
   if (bytes.substr(0, some) != mcap_magic.substr(0, some) || (ended_ && some < mcap_magic.size())) {
     state_ = State::foreign;
@@ -116,14 +116,14 @@ void McapReader::start() {
     return;
   }
   if (some < mcap_magic.size()) return;
-  // The data section's checksum begins with the magic.
+  // The checksum of the data section includes the magic.
   crc_ = crc_of(mcap_magic, crc_);
   consume(mcap_magic.size());
   state_ = State::records;
 }
 
-/// Reads the file's records until one can be returned. Every branch either makes progress or needs
-/// more bytes.
+/// Reads records of the file until one can be returned. Each branch makes progress or needs more
+/// bytes.
 std::optional<McapRecord> McapReader::next_in_file() {
   for (;;) {
     if (state_ == State::start) start();
@@ -144,9 +144,9 @@ std::optional<McapRecord> McapReader::next_in_file() {
   }
 }
 
-/// Examines the bytes at this position. Damage is reported and skipped.
-/// The tests go from cheap to expensive. A length that is impossible is damage, and a length that
-/// reaches past the bytes may need more of them.
+/// Examines the bytes at this position. Damage is reported and skipped. The cheap tests come first.
+/// An impossible length is damage. A length beyond the present bytes means that more bytes may be
+/// needed.
 McapReader::Look McapReader::look() {
   const std::string_view bytes = rest();
   const auto head = decode_mcap_head(bytes);
@@ -160,16 +160,16 @@ McapReader::Look McapReader::look() {
     return Look::damaged;
   }
   if (head && head->length <= bytes.size() - mcap_record_head) return Look::whole;
-  // More bytes may still arrive, or the file ends exactly here.
+  // More bytes may arrive, or the file ends exactly here.
   if (!ended_ || bytes.empty()) return Look::nothing;
   end_in_record();
   return state_ == State::records ? Look::damaged : Look::truncated;
 }
 
-/// Reads the complete record at this position. Absent if readers do not need it, or if it is
-/// damaged.
+/// Reads the complete record at this position. The result is empty if readers do not need the
+/// record, or if the record is damaged.
 std::optional<McapRecord> McapReader::read_record() {
-  // look() has seen that the record is complete.
+  // look() has checked that the record is complete.
   record_at_ = offset_;
   const McapRecordHead head = *decode_mcap_head(rest());
   const std::string_view whole = rest().substr(0, mcap_record_head + head.length);
@@ -181,26 +181,26 @@ std::optional<McapRecord> McapReader::read_record() {
     report_damage("a record with valid fields and checksum", "a damaged record");
     return std::nullopt;
   }
-  // A record outside of chunks is covered by the section's checksum only.
+  // No chunk's checksum covers this record; only the section's checksum does.
   if (!is_chunk) uncovered_ = true;
   if (is_chunk) record = next_in_chunk();
-  // check_crc() needs the checksum before this record, so crc_ is updated after it.
+  // crc_ is updated last, because check_crc() needs the checksum of the bytes before this record.
   if (record) check_crc(*record, whole);
   crc_ = crc_of(whole, crc_);
   if (head.op == McapOp::data_end) {
-    // The summary has a checksum of its own, which begins after this record.
+    // The summary has its own checksum, which begins after this record.
     crc_ = 0;
-    crc_counts_ = true;  // valid for the summary, whatever was skipped before it
+    crc_counts_ = true;  // the summary's checksum is valid even if earlier bytes were skipped
   }
   if (head.op == McapOp::footer) state_ = State::after_footer;
   consume(whole.size());
   return record;
 }
 
-/// Checks the checksum in a data end or footer. `bytes`: the whole record, which follows the bytes
-/// covered by crc_.
+/// Compares the checksum in a data end or footer record with crc_. `bytes`: the whole record. crc_
+/// covers the bytes before the record.
 void McapReader::check_crc(const McapRecord& record, std::string_view bytes) {
-  // After skipped bytes the checksum can't fit. The summary's data are then not trusted either.
+  // After skipped bytes the checksum can't match. The data of the summary are then not used either.
   if (!crc_counts_) {
     if (std::holds_alternative<McapFooter>(record)) is_summary_damaged_ = true;
     return;
@@ -212,7 +212,7 @@ void McapReader::check_crc(const McapRecord& record, std::string_view bytes) {
   } else if (const auto* footer = std::get_if<McapFooter>(&record)) {
     constexpr std::size_t fields = mcap_record_head + 8 + 8;
     stated = footer->summary_crc;
-    // The checksum covers the footer up to the checksum itself.
+    // The checksum covers the footer's fields before the checksum.
     covered = crc_of(bytes.substr(0, fields), crc_);
     is_summary_damaged_ = stated != 0 && stated != covered;
   }
@@ -222,18 +222,19 @@ void McapReader::check_crc(const McapRecord& record, std::string_view bytes) {
   }
 }
 
-/// Returns whether a chunk with consistent sizes is at this position. Its records may still be
+/// Returns true if a chunk with consistent sizes is at this position. Its records may still be
 /// damaged.
 bool McapReader::open_chunk(std::string_view content) {
   const auto chunk = decode_mcap_chunk(content);
   if (!chunk || content.size() != chunk->size()) return false;
-  // 0 means that the writer made no checksum.
+  // A checksum of 0 means that the writer computed none.
   uncovered_ = chunk->head.uncompressed_crc == 0;
   auto records = unpack(*chunk, longest_);
   if (records) {
     chunk_ = *std::move(records);
   } else {
-    // Only this chunk is lost: its sizes fit, so the next record's place is known.
+    // Only this chunk is lost. Its sizes are consistent, so the position of the next record is
+    // known.
     report(Severity::error, records.error().expected, records.error().found,
            "the chunk's messages are left out");
     skipped_ += content.size();
@@ -241,16 +242,16 @@ bool McapReader::open_chunk(std::string_view content) {
   return true;
 }
 
-/// The file ends within a record. If a valid chunk follows later, the record's head is damaged.
-/// Otherwise the file is truncated.
+/// Handles the end of the file within a record. If a valid chunk follows later, the record's head
+/// is damaged. Otherwise the file is truncated.
 void McapReader::end_in_record() {
-  // The search moves the position. It is set back afterwards, because findings need the place of
-  // this record.
+  // The search changes the position. The old position is restored afterwards, because findings need
+  // the position of this record.
   const std::size_t taken = taken_;
   const std::uint64_t offset = offset_, skipped_before = skipped_;
   consume(1);
   state_ = State::lost;
-  // end() was called, so the search sees all bytes that the file has.
+  // The search has all bytes of the file, because end() was called.
   find_chunk();
   const bool damaged = state_ == State::records;
   const std::size_t skipped = taken_ - taken;
@@ -265,7 +266,7 @@ void McapReader::end_in_record() {
     return;
   }
   const std::string_view bytes = rest();
-  // Messages can be saved from a chunk only. Other truncated records are left out.
+  // Messages can be recovered only from a truncated chunk. Other truncated records are left out.
   const auto chunk = decode_mcap_head(bytes) && decode_mcap_head(bytes)->op == McapOp::chunk
                          ? decode_mcap_chunk(bytes.substr(mcap_record_head))
                          : std::nullopt;
@@ -279,9 +280,9 @@ void McapReader::end_in_record() {
   consume(bytes.size());
 }
 
-/// Returns whether the bytes are a chunk. Its sizes make it likely, and its checksum proves it.
-/// Unpacking is the proof. The work of failed attempts is summed in tried_, because a file may
-/// imitate many chunks.
+/// Returns true if the bytes are a chunk. Consistent sizes make this likely, and unpacking with the
+/// checksum proves it. A file may contain many false chunks, so tried_ sums up the work of failed
+/// attempts.
 bool McapReader::is_chunk(const McapChunkView& chunk) {
   constexpr std::uint64_t beginning = std::uint64_t{128} << 10;  // memory for zstd, counted as work
   const bool is = unpack(chunk, longest_).has_value();
@@ -289,23 +290,23 @@ bool McapReader::is_chunk(const McapChunkView& chunk) {
   return is;
 }
 
-// A damaged file may contain many false candidates. The work on them is limited to most_tried
-// bytes.
+// Searches for the next chunk. A damaged file may contain many false candidates, so the work is
+// limited to most_tried bytes.
 void McapReader::find_chunk() {
   constexpr std::uint64_t most_tried = std::uint64_t{1} << 30;
   while (!rest().empty()) {
     const std::size_t candidate = rest().find(static_cast<char>(McapOp::chunk));
     skip(std::min(candidate, rest().size()));
     const std::string_view bytes = rest();
-    // A candidate's head may still arrive.
+    // The head of a candidate may not have arrived completely.
     if (bytes.size() < longest_chunk_head && !ended_) return;
     const auto head = decode_mcap_head(bytes);
     const auto chunk = head ? decode_mcap_chunk(bytes.substr(mcap_record_head)) : std::nullopt;
-    // Random bytes rarely pass all of these tests, which cost next to nothing.
+    // These tests take little time, and random bytes rarely pass them.
     const bool likely = chunk && head->length <= longest_ && tried_ < most_tried &&
                         chunk->head.uncompressed_size <= longest_ &&
                         chunk->head.compression.size() <= 4 && head->length == chunk->size();
-    // The candidate looks right but is incomplete. More bytes decide.
+    // The candidate looks like a chunk but is incomplete. The decision needs more bytes.
     if (likely && !chunk->whole() && !ended_) return;
     if (likely && chunk->whole() && is_chunk(*chunk)) {
       state_ = State::records;
@@ -317,7 +318,7 @@ void McapReader::find_chunk() {
 
 void McapReader::find_magic() {
   const std::string_view bytes = rest();
-  // Exactly the magic must follow. One more byte shows whether something follows it.
+  // Exactly the magic must follow. One more byte would show that the file continues.
   if (bytes.size() <= mcap_magic.size() && !ended_) return;
   if (bytes != mcap_magic) {
     report(Severity::error, "the MCAP magic after the footer", "other bytes",

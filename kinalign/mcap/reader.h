@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads an MCAP file from beginning to end. The file may be truncated. The caller feeds pieces, and
-// the reader returns records, with those of a chunk in place of the chunk. Damaged parts are
-// skipped and reported, and reading continues at the next recognisable chunk. Memory: the present
-// record and chunk, at most `most_record` bytes each.
+// Reads an MCAP file from beginning to end. The caller passes pieces of the file, and the reader
+// returns records. Instead of a chunk, it returns the records in the chunk. Damaged parts are
+// skipped and reported, and reading continues at the next recognisable chunk. The file may be
+// truncated. The reader keeps the current record and chunk in memory, at most `most_record` bytes
+// each.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -16,54 +17,53 @@
 
 namespace kinalign {
 
-/// The caller may cut the file into pieces at any place.
+/// The file may be cut into pieces anywhere.
 class McapReader {
  public:
   static constexpr std::uint64_t most_record = std::uint64_t{256} << 20;
 
-  /// A record or chunk longer than `longest_record` is treated as damage. This limits the memory.
+  /// Records and chunks longer than `longest_record` count as damage. This limits the memory.
   explicit McapReader(std::uint64_t longest_record = most_record) : longest_(longest_record) {}
 
   /// Adds the next bytes of the file.
   void feed(std::string_view piece);
-  /// Call when the file has no more bytes.
+  /// Call this when the file has no more bytes.
   void end() { ended_ = true; }
   bool ended() const { return ended_; }
 
-  /// Returns the next record. Absent: more bytes are needed or, after end(), there is no more
-  /// record. The data of a message is valid until the next call of any function.
+  /// Returns the next record. An empty result means that more bytes are needed or, after end(),
+  /// that no record is left. The data of a message are valid until the next call of any function.
   std::optional<McapRecord> next();
 
-  /// Position in the file of the last record, or of its chunk.
+  /// The position of the last record, or of the chunk that contains it, in the file.
   std::uint64_t at() const { return record_at_; }
-  /// Bytes of that record or chunk. For a truncated one, the bytes that are present.
+  /// The size of that record or chunk, bytes. If it is truncated, only the present bytes count.
   std::uint64_t size() const { return record_size_; }
-  /// Returns whether the file ends as a properly closed file. Otherwise it is truncated, even if
-  /// much of it was read.
+  /// True if the file has the end of a properly closed file. Otherwise the file is truncated.
   bool closed() const { return state_ == State::closed; }
   bool is_mcap() const { return state_ != State::foreign; }
-  /// Returns whether no chunk's checksum covers the last record: it is in a truncated chunk, in a
+  /// True if no chunk's checksum covers the last record. The record is in a truncated chunk, in a
   /// chunk without a checksum, or outside of chunks.
   bool unchecked() const { return in_truncated_chunk_ || uncovered_; }
-  /// Returns whether the last record is in the chunk in which the file ends.
+  /// True if the last record is in a chunk that the end of the file cuts off.
   bool in_truncated_chunk() const { return in_truncated_chunk_; }
-  /// Returns whether the checksum of the data section covers every message. Known at the end of the
-  /// section.
+  /// True if the checksum of the data section covers every message. The result is valid after the
+  /// end of the section.
   bool all_checked() const { return all_checked_; }
-  /// Returns whether the summary's checksum is wrong. Known at the end of the file.
+  /// True if the checksum of the summary is wrong. The result is valid at the end of the file.
   bool is_summary_damaged() const { return is_summary_damaged_; }
-  /// Bytes of the file that were skipped: not a record, or with a wrong checksum. Bytes that a
-  /// truncated file lacks are not counted.
+  /// The number of skipped bytes: bytes that are no record, or have a wrong checksum. Bytes that
+  /// are missing from a truncated file are not counted.
   std::uint64_t skipped() const { return skipped_; }
-  /// Findings, each with its position in `found`; 200 at most.
+  /// At most 200 findings. The text `found` of each one contains the position.
   const Findings& findings() const { return findings_; }
 
  private:
   // start: before the magic. records: at a record. lost: searching for the next chunk.
-  // after_footer: before the last magic. closed, bad_end, foreign: final states.
+  // after_footer: before the magic at the end. closed, bad_end and foreign: finished.
   enum class State : std::uint8_t { start, records, lost, after_footer, closed, bad_end, foreign };
-  // The result of look(): too few bytes, a complete record, the file's truncated end, or damage
-  // that was skipped.
+  // The result of look(): too few bytes, a complete record, the truncated end of the file, or
+  // skipped damage.
   enum class Look : std::uint8_t { nothing, whole, truncated, damaged };
   Look look();
   std::optional<McapRecord> read_record();
@@ -86,27 +86,27 @@ class McapReader {
   std::uint64_t longest_;
   State state_ = State::start;
   bool ended_ = false;
-  // buffer_ holds the bytes that were fed and are not yet dropped; the first taken_ of them are
-  // read. feed() drops them, so views into buffer_ are valid until then.
+  // buffer_ contains bytes of the file, and the first taken_ bytes are read. The next feed()
+  // removes these, so views into buffer_ are valid until then.
   std::string buffer_;
   std::size_t taken_ = 0;     // bytes of buffer_ that were read
-  std::uint64_t offset_ = 0;  // position in the file of the next byte
+  std::uint64_t offset_ = 0;  // position of the next byte in the file
   std::uint64_t record_at_ = 0, record_size_ = 0;
   std::uint32_t crc_ = 0;   // checksum of the data section, later of the summary
-  bool crc_counts_ = true;  // no byte covered by crc_ was skipped
-  std::string chunk_;       // records of the present chunk
+  bool crc_counts_ = true;  // false after a skipped byte
+  std::string chunk_;       // records of the current chunk
   std::size_t chunk_taken_ = 0;
   bool in_truncated_chunk_ = false, uncovered_ = false;
   // all_checked_ and is_summary_damaged_ stay false until the record with the checksum is read.
   bool all_checked_ = false, is_summary_damaged_ = false;
   std::uint64_t skipped_ = 0;
-  std::uint64_t tried_ = 0;  // bytes tried as a chunk without success
+  std::uint64_t tried_ = 0;  // bytes that were unpacked for false chunks
   Findings findings_;
 };
 
-/// Returns the reader's next record and feeds pieces as needed. An empty piece is the end of the
-/// file. Absent after the last record, or if the file is not an MCAP file. Fails if `next_piece`
-/// fails.
+/// Returns the reader's next record and requests pieces as needed. An empty piece means the end of
+/// the file. The result is empty after the last record, or if the file is not an MCAP file. Fails
+/// if `next_piece` fails.
 template <class NextPiece>
 Result<std::optional<McapRecord>> pull(McapReader& reader, const NextPiece& next_piece) {
   for (;;) {

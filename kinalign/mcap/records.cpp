@@ -12,9 +12,9 @@ namespace kinalign {
 
 namespace {
 
-// Reading.
+// Functions for reading.
 
-// A truncated field reads as zeros. Callers ask complete() after the last field.
+// Fields that are cut off read as zeros. Callers check complete() after the last field.
 std::string text(LittleEndianReader& from) {
   return std::string(text_of(from.take_bytes(from.take<std::uint32_t>())));
 }
@@ -28,12 +28,12 @@ void take(LittleEndianReader& from, std::string_view& value) {
   value = text_of(from.take_bytes(from.take<std::uint32_t>()));
 }
 
-/// Reads the entries of a map or an array, whose length is given in bytes.
+/// Reads the entries of a map or an array. Its length in bytes stands before the entries.
 template <class Take>
 void entries(LittleEndianReader& from, Take one) {
   LittleEndianReader inner(from.take_bytes(from.take<std::uint32_t>()));
   while (inner.complete() && inner.left() > 0) one(inner);
-  // a truncated entry makes the whole record invalid
+  // If an entry is cut off, this makes the whole record incomplete.
   if (!inner.complete()) from.take_bytes(UINT64_MAX);
 }
 void take(LittleEndianReader& from, McapTexts& texts) {
@@ -43,7 +43,7 @@ void take(LittleEndianReader& from, McapTexts& texts) {
   });
 }
 void take(LittleEndianReader& from, std::map<std::uint16_t, std::uint64_t>& numbers) {
-  // A repeated key keeps its last value.
+  // If a key is repeated, its last value is kept.
   entries(from, [&](LittleEndianReader& one) {
     const auto key = one.take<std::uint16_t>();
     numbers.insert_or_assign(key, one.take<std::uint64_t>());
@@ -53,7 +53,7 @@ void take(LittleEndianReader& from, McapOp& op) {
   op = static_cast<McapOp>(from.take<std::uint8_t>());
 }
 
-// Writing.
+// Functions for writing.
 
 void put(std::string& out, std::string_view text) {
   append_little(static_cast<std::uint32_t>(text.size()), out);
@@ -71,7 +71,7 @@ void put(std::string& out, const std::map<Key, Value>& entries) {
     put(out, key);
     put(out, value);
   }
-  // The length of the map in bytes is known only now. It does not count its own four bytes.
+  // The length of the map in bytes is known now. It does not include its own four bytes.
   put_little(static_cast<std::uint32_t>(out.size() - at - 4), out.data() + at);
 }
 void put(std::string& out, McapOp op) { out += static_cast<char>(op); }
@@ -90,29 +90,29 @@ template <class Record>
 std::optional<McapRecord> decoded(std::string_view content) {
   LittleEndianReader from(octets(content));
   Record record;
-  // Bytes after the known fields are allowed, so only missing ones are an error.
+  // Bytes after the known fields are allowed. Only missing fields are an error.
   take_fields(from, record);
   if constexpr (std::is_same_v<Record, McapMessage>) record.data = text_of(from.rest());
   if (!from.complete()) return std::nullopt;
   return record;
 }
 
-/// Absent also if the checksum is wrong.
+/// Decodes an attachment. The result is empty also if the checksum is wrong.
 template <>
 std::optional<McapRecord> decoded<McapAttachment>(std::string_view content) {
   LittleEndianReader from(octets(content));
   McapAttachment attachment;
   take_fields(from, attachment);
   attachment.data = text_of(from.take_bytes(from.take<std::uint64_t>()));
-  // The checksum covers all fields before it.
+  // The checksum covers all fields in front of it.
   const std::string_view covered = content.substr(0, content.size() - from.left());
   const auto crc = from.take<std::uint32_t>();
   if (!from.complete() || (crc != 0 && crc != crc_of(covered))) return std::nullopt;
   return attachment;
 }
 
-/// Writes opcode and length before the bytes that `content` appends.
-/// The length is filled in afterwards, so the content is written once and not measured first.
+/// Writes opcode and length, then the bytes that `content` appends. The length is filled in
+/// afterwards, so the content need not be measured first.
 template <class Content>
 void record(std::string& out, McapOp op, Content content) {
   const std::size_t at = out.size();
@@ -122,7 +122,7 @@ void record(std::string& out, McapOp op, Content content) {
   put_little(static_cast<std::uint64_t>(out.size() - at - mcap_record_head), out.data() + at + 1);
 }
 
-/// Decodes the record of the variant that has this opcode.
+/// Decodes the type of record in the variant that has this opcode.
 template <class... Records>
 std::optional<McapRecord> decoded_as(McapOp op, std::string_view content,
                                      const std::variant<Records...>*) {
@@ -138,7 +138,7 @@ std::optional<McapRecord> decode_mcap_record(McapOp op, std::string_view content
 }
 
 std::optional<McapRecordHead> decode_mcap_head(std::string_view bytes) {
-  // An unknown opcode is a valid value of the enumeration, because its type is fixed.
+  // The enumeration has a fixed type, so an unknown opcode is a valid value.
   LittleEndianReader from(octets(bytes));
   const auto op = static_cast<McapOp>(from.take<std::uint8_t>());
   const auto length = from.take<std::uint64_t>();
@@ -150,7 +150,7 @@ std::optional<McapChunkView> decode_mcap_chunk(std::string_view content) {
   McapChunkView chunk;
   take_fields(from, chunk.head);
   take(from, chunk.stored_size);
-  // substr() cuts at the end of the bytes; whole() shows whether it did.
+  // substr() stops at the end of the bytes. whole() shows whether bytes are missing.
   chunk.stored = text_of(from.rest()).substr(0, chunk.stored_size);
   if (!from.complete()) return std::nullopt;
   return chunk;
@@ -175,7 +175,7 @@ template void append_mcap(std::string&, const McapFooter&);
 void append_mcap(std::string& out, const McapMessage& message) {
   constexpr std::size_t head = mcap_record_head + 2 + 4 + 8 + 8;
   const std::size_t at = out.size();
-  out.resize(at + head);  // one resize, since recorders call this function most
+  out.resize(at + head);  // one resize, because recorders call this function most often
   char* to = out.data() + at;
   to[0] = static_cast<char>(McapOp::message);
   put_little(static_cast<std::uint64_t>(head - mcap_record_head + message.data.size()), to + 1);
@@ -187,7 +187,7 @@ void append_mcap(std::string& out, const McapMessage& message) {
 }
 
 void append_mcap(std::string& out, const McapAttachment& attachment) {
-  // The checksum needs the position of the first field.
+  // The checksum begins at the first field, so its position is kept.
   record(out, McapOp::attachment, [&] {
     const std::size_t at = out.size();
     put_fields(out, attachment);
@@ -209,7 +209,7 @@ void append_mcap_message_index(std::string& out, std::uint16_t channel,
                                const std::vector<McapMessageEntry>& entries) {
   record(out, McapOp::message_index, [&] {
     append_little(channel, out);
-    // 16 bytes an entry: the log time and the offset.
+    // An entry has 16 bytes: the log time and the offset.
     append_little(static_cast<std::uint32_t>(16 * entries.size()), out);
     for (const McapMessageEntry& entry : entries) {
       append_little(entry.log_time, out);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The records of MCAP, converted from bytes to structures and back: https://mcap.dev/spec.
-// docs/formats/recording.md repeats the part that recordings use. A record is an opcode, a length
-// of 64 bits, and its content. Unknown opcodes are skipped, and so are bytes after the known
-// fields.
-// A length counts the content only, without the nine bytes of opcode and length.
+// Converts the records of MCAP between bytes and structures: https://mcap.dev/spec.
+// docs/formats/recording.md describes the part that recordings use. A record consists of an opcode
+// (8 bits), a length (64 bits) and its content. The length counts the content only. Readers skip
+// unknown opcodes, and bytes after the known fields.
 #pragma once
 
 #include <cstdint>
@@ -36,12 +35,13 @@ enum class McapOp : std::uint8_t {
   metadata_index = 0x0D,
   summary_offset = 0x0E,
   data_end = 0x0F,
-  // private: chunk index records, stored in the file until the summary is written
+  // kinalign's own opcode: pages of chunk index records. They stay in the file until the summary is
+  // written.
   index_page = 0x81
 };
 
-// Each record states its opcode and its fields in the order of their bytes. Reading and writing
-// share this list.
+// Each record lists its opcode and its fields in the order of their bytes. The code for reading and
+// writing uses the same list.
 
 using McapTexts = std::map<std::string, std::string>;
 
@@ -51,7 +51,7 @@ struct McapHeader {
   static auto fields(auto& r) { return std::tie(r.profile, r.library); }
 };
 
-/// The description of the messages of a channel. Id 0 means no schema.
+/// Describes the messages of a channel. The id 0 means that there is no schema.
 struct McapSchema {
   static constexpr McapOp op = McapOp::schema;
   std::uint16_t id = 0;
@@ -61,7 +61,7 @@ struct McapSchema {
   bool operator==(const McapSchema&) const = default;
 };
 
-// Data of one sender share a channel. The channel names the topic and the encoding of its messages.
+// The messages of one sender on one topic, and their encoding.
 struct McapChannel {
   static constexpr McapOp op = McapOp::channel;
   std::uint16_t id = 0, schema_id = 0;
@@ -74,15 +74,16 @@ struct McapChannel {
   bool operator==(const McapChannel&) const = default;
 };
 
-/// log_time: when the message was recorded. publish_time: when it was sent, or log_time if that is
-/// not known (the specification).
+/// log_time: when the message was recorded. publish_time: when the message was sent or, if this is
+/// unknown, log_time, as the specification says.
 struct McapMessage {
   static constexpr McapOp op = McapOp::message;
   std::uint16_t channel = 0;
   std::uint32_t sequence = 0;
   std::uint64_t log_time = 0, publish_time = 0;  // ns
-  std::string_view data;                         // bytes of the reader or of the caller
-  /// Without the data, which ends the record.
+  std::string_view data;                         // view of bytes that belong to the reader or the
+                                                 // caller
+  /// The list does not include the data, which stand at the end of the record.
   static auto fields(auto& r) {
     return std::tie(r.channel, r.sequence, r.log_time, r.publish_time);
   }
@@ -92,7 +93,7 @@ struct McapAttachment {
   static constexpr McapOp op = McapOp::attachment;
   std::uint64_t log_time = 0, create_time = 0;
   std::string name, media_type, data;
-  /// Without the data and its checksum, which end the record.
+  /// The list does not include the data and the checksum, which stand at the end of the record.
   static auto fields(auto& r) { return std::tie(r.log_time, r.create_time, r.name, r.media_type); }
 };
 
@@ -103,22 +104,21 @@ struct McapMetadata {
   static auto fields(auto& r) { return std::tie(r.name, r.texts); }
 };
 
-/// The fields of a chunk before its records.
-/// A chunk holds records as one block, compressed or not. Its checksum is that of the records
-/// before compression.
+/// The fields of a chunk before its records. A chunk contains records as one block, compressed or
+/// not. Its checksum covers the uncompressed records.
 struct McapChunkHead {
   static constexpr McapOp op = McapOp::chunk;
   std::uint64_t start = 0, end = 0;  // lowest and highest log time, ns
   std::uint64_t uncompressed_size = 0;
-  std::uint32_t uncompressed_crc = 0;  // 0: not checked
-  std::string_view compression;  // "", "zstd", "lz4"; for a chunk that was read, part of its bytes
+  std::uint32_t uncompressed_crc = 0;  // 0: no checksum
+  std::string_view compression;  // "", "zstd" or "lz4"; after reading, a view of the chunk's bytes
   static auto fields(auto& r) {
     return std::tie(r.start, r.end, r.uncompressed_size, r.uncompressed_crc, r.compression);
   }
 };
 
-/// Tells a reader where a chunk is and which channels and times it holds. Offsets count from the
-/// file's first byte.
+/// Gives the position of a chunk, and its channels and times. Offsets count from the first byte of
+/// the file.
 struct McapChunkIndex {
   static constexpr McapOp op = McapOp::chunk_index;
   std::uint64_t start = 0, end = 0, chunk_offset = 0, chunk_length = 0;
@@ -162,7 +162,7 @@ struct McapStatistics {
   }
 };
 
-/// Tells where the summary holds the records of one opcode.
+/// Gives the position of all records of one opcode in the summary.
 struct McapSummaryOffset {
   static constexpr McapOp op = McapOp::summary_offset;
   McapOp group{};
@@ -172,62 +172,63 @@ struct McapSummaryOffset {
 
 struct McapDataEnd {
   static constexpr McapOp op = McapOp::data_end;
-  std::uint32_t data_crc = 0;  // 0: not checked
+  std::uint32_t data_crc = 0;  // 0: no checksum
   static auto fields(auto& r) { return std::tie(r.data_crc); }
 };
 
 struct McapFooter {
   static constexpr McapOp op = McapOp::footer;
-  std::uint64_t summary_start = 0, summary_offset_start = 0;  // 0: none
-  std::uint32_t summary_crc = 0;                              // 0: not checked
+  std::uint64_t summary_start = 0, summary_offset_start = 0;  // 0: absent
+  std::uint32_t summary_crc = 0;                              // 0: no checksum
   static auto fields(auto& r) {
     return std::tie(r.summary_start, r.summary_offset_start, r.summary_crc);
   }
 };
 
-/// The records that a reader returns. Chunks are replaced by their content.
+/// The records that a reader returns. It returns the content of a chunk instead of the chunk.
 using McapRecord =
     std::variant<McapHeader, McapSchema, McapChannel, McapMessage, McapAttachment, McapMetadata,
                  McapChunkIndex, McapAttachmentIndex, McapMetadataIndex, McapStatistics,
                  McapSummaryOffset, McapDataEnd, McapFooter>;
 
-/// Decodes the content of a record. Absent if the fields do not fit, or if the opcode is not in the
-/// variant (chunk, message index, index page, or unknown).
-/// Text and bytes in the result are copies, except the data of a message.
+/// Decodes the content of a record. The result is empty if the fields do not fit, or if the variant
+/// does not include the opcode (chunk, message index, index page, or unknown). Texts and bytes in
+/// the result are copies, except the data of a message.
 std::optional<McapRecord> decode_mcap_record(McapOp op, std::string_view content);
 
-/// The head of a chunk and its stored records. Of a truncated chunk, those that are present.
+/// The head of a chunk and its stored records. If the chunk is truncated, only the present records.
 struct McapChunkView {
   McapChunkHead head;
   std::uint64_t stored_size = 0;
   std::string_view stored;
 
-  /// Bytes of the content without the stored records and the compression's name.
+  /// The bytes of a chunk's content without the stored records and without the name of the
+  /// compression.
   static constexpr std::size_t fields = 8 + 8 + 8 + 4 + 4 + 8;
 
   bool whole() const { return stored.size() == stored_size; }
-  /// Bytes of the complete content.
+  /// The bytes of the content if it is complete.
   std::uint64_t size() const { return fields + head.compression.size() + stored_size; }
 };
-/// The beginning of a record.
+/// The opcode and the length of a record.
 struct McapRecordHead {
   McapOp op{};
   std::uint64_t length = 0;  // bytes of the content
 };
-/// Absent if `bytes` is shorter than a head.
+/// The result is empty if `bytes` is shorter than a head.
 std::optional<McapRecordHead> decode_mcap_head(std::string_view bytes);
 
-/// Absent if the head is longer than `content`.
+/// The result is empty if `content` is shorter than a chunk's head.
 std::optional<McapChunkView> decode_mcap_chunk(std::string_view content);
 
-/// Appends the complete record. `Record`: a record with a list of fields.
+/// Appends the complete record. `Record` must be a type with a list of fields.
 template <class Record>
 void append_mcap(std::string& out, const Record& record);
 void append_mcap(std::string& out, const McapMessage& message);
 void append_mcap(std::string& out, const McapAttachment& attachment);
 void append_mcap(std::string& out, const McapChunkHead& head, std::string_view stored);
 
-/// The log time of a message, ns, and the offset of its record among the chunk's records.
+/// The log time of a message, ns, and the position of its record among the records of the chunk.
 struct McapMessageEntry {
   std::uint64_t log_time = 0, offset = 0;
 };

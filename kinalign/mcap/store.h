@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stores an MCAP file in an OutputFile, which gets its name only when it is complete.
-// For files that are made in one go; the recorder appends to a GrowingFile instead.
+// Stores an MCAP file in an OutputFile, which gets its name only when it is complete. This is for
+// files that are written at once. The recorder appends to a GrowingFile instead.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -8,7 +8,7 @@
 
 namespace kinalign {
 
-/// A store that writes to `out`, which must outlive it.
+/// A store that writes to `out`. `out` must exist longer than the store.
 inline McapStore mcap_store(OutputFile& out) {
   return {[&out](std::string_view bytes) { return out.write(bytes); },
           [&out](std::uint64_t at, std::span<char> to) -> Result<void> {

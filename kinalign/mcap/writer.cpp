@@ -10,12 +10,12 @@ namespace kinalign {
 
 namespace {
 
-// A page is written when it has this many bytes.
+// A page of chunk indexes is written when it has this many bytes.
 constexpr std::size_t page_size = std::size_t{64} << 10;
 
 }  // namespace
 
-/// The state of the summary while it is written: the groups of records, their positions, and the
+/// The state while the summary is written: its groups of records, their positions, and the
 /// checksum.
 struct McapWriter::Summary {
   std::uint64_t start = 0;
@@ -24,7 +24,7 @@ struct McapWriter::Summary {
 };
 
 Result<void> McapWriter::append(std::string_view bytes) {
-  // Nothing changes if the store fails.
+  // If the store fails, the writer stays unchanged.
   KA_TRY(store_.append(bytes));
   size_ += bytes.size();
   crc_ = crc_of(bytes, crc_);
@@ -38,17 +38,19 @@ Result<void> McapWriter::begin(const McapHeader& header) {
 }
 
 Result<void> McapWriter::write(const McapStoredChunk& chunk) {
-  // The index has positions within the chunk; the chunk's position in the file is added.
+  // Positions in the chunk's index count from the chunk. The position of the chunk in the file is
+  // added.
   McapChunkIndex index = chunk.index;
   index.chunk_offset += size_;
   for (auto& [channel, offset] : index.message_index_offsets) offset += size_;
   KA_TRY(store_.append(chunk.bytes));
   size_ += chunk.bytes.size();
-  // store() has made the chunk's checksum already, in another thread.
+  // store() has computed the chunk's checksum in another thread.
   crc_ = joined_crc(crc_, chunk.crc, chunk.bytes.size());
 
   append_mcap(chunk_indexes_, index);
-  // A chunk of definitions alone must not change the first and last time.
+  // A chunk without messages has no times, so it must not change the first and last time of the
+  // file.
   std::uint64_t messages = 0;
   for (const auto& [channel, count] : chunk.channel_messages) {
     statistics_.channel_messages[channel] += count;
@@ -61,14 +63,15 @@ Result<void> McapWriter::write(const McapStoredChunk& chunk) {
     statistics_.messages += messages;
   }
   ++statistics_.chunks;
-  // The summary repeats the definitions of all chunks, each once.
+  // The summary contains the definitions of all chunks, each definition once.
   for (const auto& [id, schema] : chunk.definitions.schemas) {
     definitions_.schemas.insert_or_assign(id, schema);
   }
   for (const auto& [id, channel] : chunk.definitions.channels) {
     definitions_.channels.insert_or_assign(id, channel);
   }
-  // The chunk is written. If the page cannot be written, it waits in memory for the next one.
+  // The chunk is written already. If the page can't be written, its records stay in memory and the
+  // next call tries again.
   if (chunk_indexes_.size() >= page_size) (void)write_index_page();
   return {};
 }
@@ -77,7 +80,7 @@ Result<void> McapWriter::write_index_page() {
   std::string bytes;
   append_mcap_record(bytes, McapOp::index_page, chunk_indexes_);
   KA_TRY(append(bytes));
-  // The page's content begins after the head of its record.
+  // The page's content begins after the head of the record.
   pages_.push_back({size_ - chunk_indexes_.size(), chunk_indexes_.size()});
   chunk_indexes_.clear();
   return {};
@@ -104,8 +107,8 @@ Result<void> McapWriter::write(const McapMetadata& metadata) {
   return {};
 }
 
-// Writes all groups of the summary except the chunk indexes, and remembers the position of each.
-// A group is the run of all records of one opcode. An empty group has no offset.
+// Writes all groups of the summary except the chunk indexes, and stores the position of each group.
+// A group consists of all records of one opcode. An empty group gets no summary offset.
 Result<void> McapWriter::write_definitions(Summary& summary) {
   const auto group = [&](McapOp op, const auto& put) -> Result<void> {
     std::string bytes;
@@ -124,7 +127,7 @@ Result<void> McapWriter::write_definitions(Summary& summary) {
     for (const auto& [id, channel] : definitions_.channels) append_mcap(out, channel);
   }));
   KA_TRY(group(McapOp::statistics, [&](std::string& out) { append_mcap(out, statistics_); }));
-  // The specification wants each group's records together, in any order of groups.
+  // By the specification the records of a group stand together, and the order of groups is free.
   KA_TRY(group(McapOp::attachment_index, [&](std::string& out) {
     for (const McapAttachmentIndex& index : attachments_) append_mcap(out, index);
   }));
@@ -133,7 +136,7 @@ Result<void> McapWriter::write_definitions(Summary& summary) {
   });
 }
 
-// The pages are read back from the file, so that the index need not fit into memory.
+// The pages are read from the file again, so the whole index need not fit into memory.
 Result<void> McapWriter::write_chunk_indexes(Summary& summary) {
   const std::uint64_t at = size_;
   std::string bytes;
@@ -149,7 +152,7 @@ Result<void> McapWriter::write_chunk_indexes(Summary& summary) {
   return {};
 }
 
-// The order is fixed: data end, summary, summary offsets, footer, magic.
+// The specification requires this order: data end, summary, summary offsets, footer, magic.
 Result<void> McapWriter::finish() {
   std::string bytes;
   append_mcap(bytes, McapDataEnd{crc_});
@@ -158,16 +161,16 @@ Result<void> McapWriter::finish() {
   Summary summary{size_};
   KA_TRY(write_definitions(summary));
   KA_TRY(write_chunk_indexes(summary));
-  // The summary offsets begin where the file ends now.
+  // The summary offsets begin at the current end of the file.
   McapFooter footer{summary.start, size_, 0};
   bytes.clear();
   for (const McapSummaryOffset& offset : summary.offsets) append_mcap(bytes, offset);
   append_mcap(bytes, footer);
-  // The checksum covers the footer up to itself.
+  // The checksum covers the bytes of the footer before the checksum.
   const std::string_view covered = std::string_view(bytes).substr(0, bytes.size() - 4);
   footer.summary_crc = crc_of(covered, summary.crc);
   put_little(footer.summary_crc, bytes.data() + covered.size());
-  // The reader checks the magic to know that the file is complete.
+  // A reader recognises a complete file by the magic at the end.
   bytes += mcap_magic;
   return append(bytes);
 }

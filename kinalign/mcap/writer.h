@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes an MCAP file from beginning to end. After each append the file can be read up to there.
-// The memory grows with the number of channels, not with the length: the index of the chunks is
-// written into the file in pages (private records, which readers skip), and copied to the summary
-// at the end.
-// Each page costs 16 bytes of memory more.
+// Writes an MCAP file from beginning to end. After each append the file can be read up to its end.
+// The memory depends on the number of channels and hardly on the file's length. The index of the
+// chunks is written into the file in pages, which are private records that readers skip. At the end
+// the pages are copied to the summary. Each page needs 16 bytes of memory.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -27,19 +26,19 @@ struct McapStore {
   std::function<Result<void>(std::uint64_t at, std::span<char> to)> read;
 };
 
-/// Order of calls: begin() once, write() any number of times, finish() once. A write() that fails
-/// leaves the writer as before, so it may be tried again.
+/// Call begin() once, then write() any number of times, then finish() once. A write() that fails
+/// leaves the writer unchanged, so the call may be repeated.
 class McapWriter {
  public:
   explicit McapWriter(McapStore store) : store_(std::move(store)) {}
 
-  /// Call first.
+  /// Call this first.
   Result<void> begin(const McapHeader& header);
   Result<void> write(const McapStoredChunk& chunk);
   Result<void> write(const McapAttachment& attachment);
   Result<void> write(const McapMetadata& metadata);
-  /// Writes the summary and the end. If it fails, the writer must not be used again, and the file
-  /// must be cut back to its size before the call.
+  /// Writes the summary and the end of the file. If this fails, the writer must not be used again.
+  /// The caller must then cut the file back to its size before the call.
   Result<void> finish();
 
   std::uint64_t size() const { return size_; }
@@ -53,18 +52,17 @@ class McapWriter {
   Result<void> write_chunk_indexes(Summary& summary);
 
   McapStore store_;
-  // size_ is the file's size so far: where the next record begins. All bytes up to there are in
-  // crc_.
+  // size_ is the size of the file, where the next record begins. crc_ covers all bytes up to there.
   std::uint64_t size_ = 0;
-  std::uint32_t crc_ = 0;  // of all bytes so far
+  std::uint32_t crc_ = 0;  // checksum of all bytes so far
   McapDefinitions definitions_;
   McapStatistics statistics_;
   struct Page {
-    std::uint64_t at = 0, size = 0;  // of the page's content
+    std::uint64_t at = 0, size = 0;  // position and size of the page's content
   };
-  // The index of a chunk is in exactly one place: chunk_indexes_, or one of the pages_.
+  // The index of each chunk is stored once: in chunk_indexes_ or in one of the pages_.
   std::vector<Page> pages_;
-  std::string chunk_indexes_;  // records that are not in a page yet
+  std::string chunk_indexes_;  // records that no page contains yet
   std::vector<McapAttachmentIndex> attachments_;
   std::vector<McapMetadataIndex> metadata_;
 };
