@@ -12,8 +12,8 @@ namespace kinalign {
 
 namespace {
 
-/// Ordered, so that a message begins with the names of its sender or port. survey.cpp finds the
-/// last message of each by this beginning.
+/// The keys keep their order, so that a message begins with the names of its sender or port.
+/// survey.cpp recognises messages of the same sender by this beginning.
 using Json = nlohmann::ordered_json;
 
 /// A count and its name in JSON.
@@ -23,8 +23,8 @@ struct NamedCount {
   std::uint64_t& (*in)(Counts&);
 };
 
-// The counts of a sender with their names in JSON. Writing, reading, subtraction and the schema use
-// this one list.
+// The counts of a sender with their names in JSON. Writing, reading, subtraction and the schema all
+// use this list.
 constexpr std::array<NamedCount<SenderCounts>, 8> of_sender{
     {{"messages", [](SenderCounts& c) -> std::uint64_t& { return c.messages; }},
      {"bytes", [](SenderCounts& c) -> std::uint64_t& { return c.bytes; }},
@@ -44,7 +44,7 @@ constexpr std::array<NamedCount<PortCounts>, 7> of_port{
      {"links", [](PortCounts& c) -> std::uint64_t& { return c.links; }},
      {"unsent", [](PortCounts& c) -> std::uint64_t& { return c.unsent; }}}};
 
-/// The properties of these counts in a JSON schema, to be appended to other properties.
+/// The properties of these counts in a JSON schema. The text is appended to other properties.
 template <class Named>
 std::string integers(const Named& named) {
   std::string properties;
@@ -54,14 +54,15 @@ std::string integers(const Named& named) {
   return properties;
 }
 
-/// `counts` is a copy, because the list gives references that may be written to.
+/// Writes the counts into `json`. `counts` is a copy, because the list gives references that are
+/// not const.
 template <class Named, class Counts>
 void put(const Named& named, Counts counts, Json& json) {
   for (const auto& count : named) json[count.name] = count.in(counts);
 }
 
 /// The difference of two counts, at least 0. A count may decrease: a lost frame that arrives late
-/// is no longer lost.
+/// does not count as lost any more.
 template <class Named, class Counts>
 Counts difference(const Named& named, Counts before, Counts now) {
   Counts out;
@@ -72,7 +73,8 @@ Counts difference(const Named& named, Counts before, Counts now) {
   return out;
 }
 
-/// Files may be damaged or of another version, so a key of another type counts as absent.
+/// The text of a key; empty if the key is missing or has another type. Files may be damaged or of
+/// another version.
 std::string text_at(const Json& object, const char* key) {
   const auto found = object.find(key);
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
@@ -88,7 +90,8 @@ void take(const Named& named, const Json& object, Counts& counts) {
   for (const auto& count : named) count.in(counts) = count_of(object, count.name);
 }
 
-/// Names come from other programs: bytes that are not valid UTF-8 become U+FFFD.
+/// The JSON as one line. Names come from other programs: bytes that are not valid UTF-8 become
+/// U+FFFD.
 std::string line_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -114,7 +117,7 @@ std::uint64_t frames_or_messages(const SenderCounts& counts) {
 bool speaks_another_protocol(std::string_view recorded_protocol, const SenderCounts& counts) {
   const auto protocol = find_recorded_protocol(recorded_protocol);
   if (!protocol || !row_of(*protocol).has_frame_decoder) return false;
-  // Older versions did not count the frames of trackers, only refused messages.
+  // Older versions counted refused messages of trackers, but not their frames.
   if (protocol == Protocol::slimevr && counts.refused < counts.messages) return false;
   const bool had_frames = counts.frames + counts.order.late + counts.order.duplicates > 0;
   return !had_frames && are_many(counts.messages);
@@ -148,21 +151,23 @@ McapSchema port_counts_schema() {
 
 PortCounts since(const PortCounts& before, const PortCounts& now) {
   PortCounts out = difference(of_port, before, now);
-  // Connections that were made before the take still carry its data.
+  // Connections from before the take still carry data of the take.
   out.links = now.links;
   out.sifted = now.sifted;
   return out;
 }
 
 std::uint64_t foreign_datagrams(const PortCounts& counts, std::uint64_t lost) {
-  // Lost frames may have been dropped at the same buffer, so only the excess is surely foreign.
+  // The kernel may have dropped the lost frames at the same buffer. Only the excess consists of
+  // foreign datagrams for sure.
   return counts.sifted && counts.dropped > lost ? counts.dropped - lost : 0;
 }
 
 std::string to_json(const CountedPort& counted) {
   Json json{{"stream", counted.stream}};
   put(of_port, counted.counts, json);
-  // Only true is written: recordings made before this key have the same meaning without it.
+  // `sifted` is written only if it is true, so that older recordings without this key have the same
+  // meaning.
   if (counted.counts.sifted) json["sifted"] = true;
   return line_of(json);
 }

@@ -17,13 +17,13 @@ namespace {
 
 constexpr std::string_view format = "1";
 
-/// Returns the value of a key, or an empty text if it is missing.
+/// The value of a key, or an empty text if the key is missing.
 std::string text_of(const McapTexts& texts, const std::string& key) {
   const auto found = texts.find(key);
   return found == texts.end() ? std::string() : found->second;
 }
 
-/// The whole text must be the number: "12x" is damage.
+/// Reads the number of a key. The whole text must be the number: "12x" means damage.
 std::optional<std::int64_t> number_of(const McapTexts& texts, const std::string& key) {
   std::int64_t number = 0;
   return parse_integer(text_of(texts, key), number) ? std::optional(number) : std::nullopt;
@@ -37,24 +37,24 @@ Stamp take_stamp(LittleEndianReader& from) {
   return Stamp{Duration{static_cast<std::int64_t>(from.take<std::uint64_t>())}};
 }
 
-/// Returns whether a clock has run for at most 31 years, so that differences of a few stamps cannot
-/// overflow.
+/// True if a clock has run for at most 31 years. Differences of a few stamps then cannot overflow.
 template <class Stamp>
 bool is_near(Stamp stamp) {
   constexpr Duration furthest{1'000'000'000'000'000'000};
   return -furthest <= stamp.time_since_epoch() && stamp.time_since_epoch() <= furthest;
 }
 
-/// Absent if a clock exceeds its limit.
+/// The two clocks as a pair; empty if a clock exceeds its limit.
 std::optional<ClockPair> believable(HostTime raw, Time utc) {
   if (!is_near(raw) || to_ns(utc) < 0 || to_ns(utc) > latest_log_time) return std::nullopt;
   return ClockPair{raw, utc};
 }
 
-/// Part numbers stand in file names; the limit refuses damaged ones.
+/// True for a possible part number. Part numbers occur in file names, and the limit refuses damaged
+/// numbers.
 bool is_part(std::int64_t number) { return 1 <= number && number <= 1'000'000; }
 
-/// Reads part numbers such as "1 3 4". Words that are not part numbers are left out.
+/// Reads part numbers such as "1 3 4". Other words are ignored.
 std::set<int> parts_in(std::string_view text) {
   std::set<int> parts;
   while (!text.empty()) {
@@ -66,12 +66,12 @@ std::set<int> parts_in(std::string_view text) {
   return parts;
 }
 
-// The meaning of the flags of an exchange.
+// The flags of an exchange.
 constexpr std::uint32_t echoed = 1, clockless = 2;
-// A recorded number is 2^32 more than the request's; a larger one is damage.
+// A recorded number is 2^32 more than the number of the request. A larger number is damaged.
 constexpr std::uint64_t most_frames = std::uint64_t{1} << 33U;  // nine years at 15 Hz
 
-/// The first 16 bytes are those of both kinds of exchange.
+/// The first 16 bytes, which both kinds of exchange have in common.
 std::string exchange_head(BootKey boot, std::uint32_t epoch, std::uint32_t flags) {
   std::string out;
   append_little(boot, out);
@@ -82,7 +82,8 @@ std::string exchange_head(BootKey boot, std::uint32_t epoch, std::uint32_t flags
 
 }  // namespace
 
-/// Every MCAP file begins so; the profile and the metadata tell a recording from others.
+/// True for any MCAP file. The profile and the metadata distinguish a recording from other MCAP
+/// files.
 bool looks_like_recording(std::string_view head) { return head.starts_with(mcap_magic); }
 
 McapMetadata to_metadata(const RecordingFacts& facts) {
@@ -101,8 +102,8 @@ McapMetadata to_metadata(const RecordingFacts& facts) {
   return metadata;
 }
 
-/// The facts decide how all times of a file are read. A record with one wrong field is therefore
-/// refused as a whole.
+/// These facts determine how all times of a file are read. If one field is wrong, the whole record
+/// is therefore refused.
 std::optional<RecordingFacts> to_facts(const McapMetadata& metadata) {
   const McapTexts& texts = metadata.texts;
   const auto part = number_of(texts, "part"), raw = number_of(texts, "raw_ns"),
@@ -155,8 +156,8 @@ McapChannel to_channel(std::string topic, const RawChannel& raw) {
   return channel;
 }
 
-/// Channels of the recorder itself (marks, counts, clocks) have no `transport`, which tells them
-/// from devices.
+/// Channels of the recorder itself (marks, counts, clocks) have no `transport`, so they are not
+/// taken for devices.
 std::optional<RawChannel> to_raw(const McapChannel& channel) {
   const std::string stream = text_of(channel.metadata, "stream");
   if (stream.empty() || channel.metadata.count("transport") == 0) return std::nullopt;
@@ -186,14 +187,14 @@ std::string to_json(const ClockPair& pair) {
                      pair.utc.time_since_epoch().count());
 }
 
-// The text may be damaged: numbers that do not fit or clocks that exceed their limits are refused.
+// The text may be damaged. Numbers out of range and clocks beyond their limits are refused.
 std::optional<ClockPair> to_clock_pair(std::string_view json) {
   const auto object = nlohmann::json::parse(json, nullptr, false);
   const auto ns = [&](const char* key) -> std::optional<Duration> {
     if (!object.is_object() || !object.contains(key) || !object[key].is_number_integer()) {
       return std::nullopt;
     }
-    // JSON numbers above INT64_MAX would wrap to negative times.
+    // Numbers above INT64_MAX would wrap to negative times.
     if (object[key].is_number_unsigned() && object[key].get<std::uint64_t>() > INT64_MAX) {
       return std::nullopt;
     }
@@ -219,7 +220,7 @@ std::string to_json(const RecordedMark& recorded) {
   if (mark.latency) json["latency_ms"] = static_cast<double>(mark.latency->count()) / 1e6;
   if (!mark.id.empty()) json["id"] = mark.id;
   if (!recorded.sender.empty()) json["sender"] = recorded.sender;
-  // Texts of other programs may not be UTF-8; the broken bytes become U+FFFD.
+  // Texts of other programs may not be valid UTF-8. Invalid bytes become U+FFFD.
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
@@ -253,7 +254,7 @@ std::string to_bytes(const RecordedExchange& recorded) {
   return out;
 }
 
-// The stamps of the echo are always present; the flag says whether they are valid.
+// The bytes of the echo are always present. The flag shows whether they are valid.
 std::optional<RecordedExchange> to_exchange(std::string_view bytes) {
   LittleEndianReader from(octets(bytes));
   RecordedExchange recorded;
@@ -264,7 +265,7 @@ std::optional<RecordedExchange> to_exchange(std::string_view bytes) {
   recorded.exchange.h_rx = take_stamp<HostTime>(from);
   const Exchange::Echo echo{take_stamp<NodeTime>(from), take_stamp<HostTime>(from)};
   if (flags == echoed) recorded.exchange.echo = echo;
-  // Bytes of another length or with an unknown flag are of another kind of exchange.
+  // Bytes of another length, or with an unknown flag, belong to another kind of exchange.
   if (!from.complete() || from.left() > 0 || (flags & ~echoed) != 0) return std::nullopt;
   const Exchange& e = recorded.exchange;
   const bool near = is_near(e.n_tx) && is_near(e.h_rx) && is_near(echo.n_rx) && is_near(echo.h_tx);
@@ -282,7 +283,7 @@ std::string to_bytes(const RecordedClockless& recorded) {
   return out;
 }
 
-// T6 and T3 are always present; the flag says whether they are valid.
+// The bytes of T6 and T3 are always present. The flag shows whether they are valid.
 std::optional<RecordedClockless> to_clockless(std::string_view bytes) {
   LittleEndianReader from(octets(bytes));
   RecordedClockless recorded;

@@ -11,13 +11,13 @@ void KinectSurvey::add(std::uint16_t channel, const RawChannel& raw) {
   channels_.try_emplace(channel, Channel{raw, {}});
 }
 
-// Sensors beyond most_sensors are ignored.
+// Takes the frames of a message. Sensors beyond most_sensors are ignored.
 void KinectSurvey::take(std::uint16_t channel, std::string_view payload) {
   const auto from = channels_.find(channel);
   if (from == channels_.end()) return;
   messages_.clear();
   from->second.decoder.feed(octets(payload), messages_);
-  // A datagram never continues in the next one, so what is left of it is ended here.
+  // A message never continues in the next datagram, so an incomplete message ends here.
   if (is_datagrams(from->second.raw.transport)) from->second.decoder.finish(messages_);
   for (const KinectMessage& message : messages_) {
     const auto* frame = std::get_if<KinectFrame>(&message);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks whether the Kinects of a recording have different ids. Only the origins of the frames are
-// examined, not their contents.
+// Checks whether the Kinects of a recording have different ids. It examines only ids, numbers and
+// ticks of the frames.
 #pragma once
 
 #include "kinalign/protocols/kinect/sessions.h"
@@ -15,15 +15,16 @@
 
 namespace kinalign {
 
-/// Follows the sessions of every sensor id. If two senders use one id at the same time, alignment
-/// can't tell their frames apart. Sums are small, so all frames of a recording can be examined.
+/// Follows the sessions of every sensor id. If two senders use the same id at the same time, the
+/// alignment can't distinguish their frames. Little is kept of each frame, so all frames of a
+/// recording can be examined.
 class KinectSurvey {
  public:
-  /// Adds a channel. Channels of other devices than Kinects are ignored.
+  /// Adds a channel. Channels of devices other than Kinects are ignored.
   void add(std::uint16_t channel, const RawChannel& raw);
-  /// Takes a message of an added channel.
+  /// Takes a message. Messages of channels that were not added are ignored.
   void take(std::uint16_t channel, std::string_view payload);
-  /// Reports two senders with the same sensor id.
+  /// Returns a finding if two senders used the same sensor id.
   Findings findings(const std::string& path) const;
 
  private:

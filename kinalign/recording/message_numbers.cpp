@@ -5,14 +5,14 @@
 
 namespace kinalign {
 
-/// Extends the range before the number or makes a new one. If the gap to the next range is closed,
-/// both become one.
+/// Adds a number to the range before it, or makes a new range. If two ranges now touch, they are
+/// joined.
 void MessageNumbers::add(const McapMessage& message) {
   Ranges& ranges = channels_[message.channel];
   const std::uint32_t number = message.sequence;
   const auto after = ranges.upper_bound(number);
   auto at = after;
-  // The number lies in the range before or directly at its end.
+  // The number is in the range before it, or directly at the end of that range.
   if (after != ranges.begin() && std::prev(after)->second >= number) {
     --at;
     if (at->second == number) ++at->second;
@@ -30,7 +30,7 @@ bool MessageNumbers::has(const McapMessage& message) const {
 }
 
 std::optional<std::uint32_t> MessageNumbers::next(std::uint16_t channel, std::uint64_t from) const {
-  // The caller may ask for one more than the largest number.
+  // `from` may be one more than the largest number.
   if (from > UINT32_MAX) return std::nullopt;
   const auto number = static_cast<std::uint32_t>(from);
   const Ranges& ranges = ranges_of(channel);
@@ -45,11 +45,10 @@ std::optional<std::uint32_t> MessageNumbers::last(std::uint16_t channel) const {
   return static_cast<std::uint32_t>(ranges.rbegin()->second - 1);
 }
 
-/// Only gaps between numbers count. Messages lost before the first or after the last one can't be
-/// known.
+/// Counts numbers in gaps. Messages lost before the first or after the last number are not known.
 std::uint64_t MessageNumbers::missing(std::uint16_t channel) const {
   std::uint64_t missing = 0;
-  std::optional<std::uint64_t> end;  // of the range before
+  std::optional<std::uint64_t> end;  // one more than the last number of the previous range
   for (const auto& [first, after_last] : ranges_of(channel)) {
     missing += first - end.value_or(first);
     end = after_last;
@@ -63,7 +62,7 @@ std::uint64_t MessageNumbers::missing() const {
   return all;
 }
 
-/// A channel without messages has no ranges; the empty set avoids an entry for it.
+/// The ranges of a channel. For a channel without messages, a shared empty map is returned.
 const MessageNumbers::Ranges& MessageNumbers::ranges_of(std::uint16_t channel) const {
   static const Ranges none;
   const auto found = channels_.find(channel);

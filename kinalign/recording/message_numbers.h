@@ -10,9 +10,9 @@
 
 namespace kinalign {
 
-/// A set of numbers for each channel, stored as ranges. Ranges of one channel neither overlap nor
-/// touch, so a complete recording needs one range for each channel. The end of a range is 64 bits
-/// wide, because one more than the last number may not fit into 32.
+/// A set of numbers for each channel, stored as ranges. The ranges of a channel have gaps between
+/// them, so a complete recording needs one range per channel. The end of a range has 64 bits,
+/// because one more than the last number may not fit into 32 bits.
 class MessageNumbers {
  public:
   void add(const McapMessage& message);
@@ -20,7 +20,8 @@ class MessageNumbers {
   /// The lowest number of a channel that is at least `from`.
   std::optional<std::uint32_t> next(std::uint16_t channel, std::uint64_t from) const;
   std::optional<std::uint32_t> last(std::uint16_t channel) const;
-  /// Numbers that are missing between the first and the last of a channel, and of all channels.
+  /// The count of numbers missing between the first and the last, for one channel and for all
+  /// channels.
   std::uint64_t missing(std::uint16_t channel) const;
   std::uint64_t missing() const;
 

@@ -20,8 +20,8 @@ namespace {
 
 constexpr std::string_view suffix = ".mcap";
 
-/// "take" for "take.mcap" and for "take.part2.mcap". Digits alone are no part: "walk2.mcap" keeps
-/// its name.
+/// The common name of a recording's files: "take" for "take.mcap" and "take.part2.mcap". Digits
+/// alone do not mean a part, so "walk2.mcap" gives "walk2".
 std::string_view stem_of(std::string_view name) {
   if (name.ends_with(suffix)) name.remove_suffix(suffix.size());
   constexpr std::string_view part = ".part";
@@ -30,14 +30,14 @@ std::string_view stem_of(std::string_view name) {
                                                          : name;
 }
 
-/// Reads the facts that stand before the messages of a file. Absent if the file is not a recording
+/// Reads the facts at the beginning of a file. The result is empty if the file is not a recording
 /// of kinalign.
 Result<std::optional<RecordingFacts>> read_facts(FileSystem& files, const std::string& path) {
-  constexpr std::size_t page = 4096;  // bytes; the facts stand within the first page
+  constexpr std::size_t page = 4096;  // bytes; the first page contains the facts
   InputFile file = KA_TRY(InputFile::open(files, path, page));
   McapReader reader;
   while (const auto record = KA_TRY(pull(reader, [&file] { return file.next(); }))) {
-    // Facts stand before the messages, so a long file need not be read.
+    // The facts stand before the messages, so the messages of a long file are not read.
     if (std::holds_alternative<McapMessage>(*record)) break;
     const auto* metadata = std::get_if<McapMetadata>(&*record);
     if (metadata == nullptr) continue;
@@ -46,15 +46,16 @@ Result<std::optional<RecordingFacts>> read_facts(FileSystem& files, const std::s
   return std::nullopt;
 }
 
-/// Returns whether two files are from the same run of the recorder. Both clocks at the start differ
-/// for any two runs, even on one host and with one name.
+/// True if two files are from the same run of the recorder. Any two runs differ in both clocks at
+/// the start, even on the same host and with the same name.
 bool is_same_recording(const std::optional<RecordingFacts>& a,
                        const std::optional<RecordingFacts>& b) {
   return a && b && a->first == b->first && a->host == b->host && a->anchor.raw == b->anchor.raw &&
          a->anchor.utc == b->anchor.utc;
 }
 
-/// The folder of a file and, for a link, the folder of its target. Each is "" or ends in '/'.
+/// The folder of a file and, for a link, also the folder of its target. Each folder is "" or ends
+/// in '/'.
 std::set<std::string> folders_of(const std::string& path) {
   std::set<std::string> folders{std::string(folder(path))};
   std::error_code failed;
@@ -64,20 +65,20 @@ std::set<std::string> folders_of(const std::string& path) {
   return folders;
 }
 
-/// Paths may differ in spelling or through links and still name one file.
+/// True if one of the paths names the same file, even with another spelling or through a link.
 bool contains(const std::vector<std::string>& paths, const std::string& path) {
   return std::any_of(paths.begin(), paths.end(),
                      [&](const std::string& one) { return one == path || same_file(one, path); });
 }
 
-/// The other files in a file's folders that have the name of the same recording, sorted. A file
-/// that was renamed still states the first name of its recording.
+/// The sibling files: other files in a file's folders with a name of the same recording, sorted.
+/// Siblings of a renamed file are found by the first name in its facts.
 std::vector<std::string> siblings_of(const RecordingPart& part) {
   std::set<std::string_view> stems{stem_of(file_name(part.path))};
   if (part.facts) stems.insert(stem_of(part.facts->first));
   std::vector<std::string> found;
   for (const std::string& place : folders_of(part.path)) {
-    std::error_code failed;  // a folder that cannot be listed has no siblings
+    std::error_code failed;  // a folder that can't be listed counts as empty
     std::filesystem::directory_iterator at(place.empty() ? "." : place, failed);
     for (; !failed && at != std::filesystem::directory_iterator(); at.increment(failed)) {
       const std::string name = at->path().filename().string();
@@ -85,19 +86,20 @@ std::vector<std::string> siblings_of(const RecordingPart& part) {
       if (!same_file(place + name, part.path)) found.push_back(place + name);
     }
   }
-  std::sort(found.begin(), found.end());  // a folder lists its files in no fixed order
+  std::sort(found.begin(), found.end());  // the order of a folder's list is not fixed
   return found;
 }
 
-/// Returns whether recover has joined `other` into the file, or `other` is a copy of the file under
-/// another name. If every sync fails, two parts may have the same number, but not the same name.
+/// True if `part` contains everything in `other`: recover has joined `other` into it, or `other` is
+/// a copy with another name. If every sync fails, two parts may have the same number, but not the
+/// same name.
 bool has_all_of(const RecordingPart& part, const RecordingPart& other) {
   const bool is_copy = part.facts->part == other.facts->part &&
                        stem_of(file_name(part.path)) != stem_of(file_name(other.path));
   return is_copy || part.facts->joined.contains(other.facts->part);
 }
 
-/// The order of parts. Of two names with the same number, "a.part10.mcap" follows "a.part9.mcap".
+/// A key that sorts parts. For equal part numbers, "a.part10.mcap" follows "a.part9.mcap".
 auto place_of(const RecordingPart& part) {
   return std::tuple(part.facts ? part.facts->last_part() : 1, part.path.size(), part.path);
 }
@@ -122,19 +124,19 @@ Result<RecordingParts> find_parts(FileSystem& files, const std::vector<std::stri
     known.push_back(path);
     RecordingPart part{path, KA_TRY(read_facts(files, path))};
     if (!parts.empty() && !is_same_recording(parts.front().facts, part.facts)) {
-      // Files that the user names together must belong together; siblings are only taken if they
-      // do.
+      // Files that the user names together must belong to one recording. Siblings of other
+      // recordings are ignored.
       return Failure(is_no_part(part, parts));
     }
     parts.push_back(std::move(part));
   }
-  // Siblings are searched for the named files only, not for siblings again.
+  // Only the named files are searched for siblings; the siblings found are not.
   const RecordingParts given = parts;
   for (const RecordingPart& one : given) {
     for (const std::string& path : siblings_of(one)) {
       auto facts = read_facts(files, path);
-      // A sibling that can't be read is reported by judge_parts(). Only a failing disk is an error,
-      // because data would be missing without notice.
+      // judge_parts() reports a sibling that can't be read. A failing disk is an error, because
+      // data would be missing without notice.
       if (!facts && facts.error().kind == ErrorKind::unreadable_disk) return Failure(facts.error());
       if (!facts || !is_same_recording(*facts, one.facts) || contains(known, path)) continue;
       known.push_back(path);
@@ -149,7 +151,7 @@ Result<RecordingParts> find_parts(FileSystem& files, const std::vector<std::stri
   return parts;
 }
 
-/// The content is not examined: recover must not overwrite a damaged part either.
+/// The content of the files does not matter: recover must not overwrite a damaged part either.
 std::vector<std::string> with_siblings(FileSystem& files, const std::vector<std::string>& named) {
   std::vector<std::string> all = named;
   for (const std::string& path : named) {
@@ -163,8 +165,8 @@ std::vector<std::string> with_siblings(FileSystem& files, const std::vector<std:
 
 namespace {
 
-/// Reports sibling files that have the recording's name and do not prove that they belong to it. A
-/// file of another recording is not reported if it has only the name that this one had at first.
+/// Reports sibling files that have the recording's name, but do not prove that they belong to it. A
+/// file of another recording is not reported if it only has the original name of this recording.
 Findings judge_siblings(FileSystem& files, const RecordingPart& part) {
   Findings findings;
   for (const std::string& path : siblings_of(part)) {
@@ -191,7 +193,7 @@ Findings judge_parts(FileSystem& files, const RecordingParts& parts, Severity se
   const char* join = "kinalign recover makes one file of all parts";
   const RecordingPart& front = parts.front();
   Findings findings;
-  // A file of another program stands alone and has no parts.
+  // A file of another program has no parts.
   const bool has_first = std::any_of(parts.begin(), parts.end(), [](const RecordingPart& one) {
     return !one.facts || one.facts->part == 1;
   });

@@ -15,21 +15,21 @@ Result<RecordStream> RecordStream::open(FileSystem& files, const RecordingParts&
   stream.take_piece_ = std::move(take_piece);
   for (const RecordingPart& part : parts) {
     stream.parts_.push_back({KA_TRY(InputFile::open(files, part.path)), part.facts.has_value()});
-    // Progress counts the bytes of all files together.
+    // The total for the progress is the size of all files together.
     stream.total_ += stream.parts_.back().file.size();
   }
-  // With one part nothing can be repeated, so the pass that learns numbers is left out.
+  // A single part repeats nothing, so it is not read twice.
   if (parts.size() > 1) KA_TRY(stream.learn(files, parts));
   for (Part& part : stream.parts_) KA_TRY(stream.advance(part));
   return stream;
 }
 
-/// Reads each part alone, to learn its numbers and its definitions.
+/// Reads each part alone, to learn the numbers of its messages and its definitions.
 Result<void> RecordStream::learn(FileSystem& files, const RecordingParts& parts) {
   for (std::size_t k = 0; k < parts.size(); ++k) {
     RecordStream alone = KA_TRY(open(files, {parts[k]}, progress_));
     while (const McapRecord* record = KA_TRY(alone.next())) {
-      // A definition or message without a checksum must not displace one with a checksum.
+      // A definition or message without a checksum must not replace one with a checksum.
       if (alone.reader().unchecked()) continue;
       if (const auto* message = std::get_if<McapMessage>(record)) parts_[k].numbers.add(*message);
       const auto* schema = std::get_if<McapSchema>(record);
@@ -43,7 +43,7 @@ Result<void> RecordStream::learn(FileSystem& files, const RecordingParts& parts)
 
 Result<const McapRecord*> RecordStream::next() {
   for (;;) {
-    // The last record was handed out by pointer, so its part may advance only now.
+    // The caller has a pointer to the last record, so its part advances only at the next call.
     if (taken_) KA_TRY(advance(parts_[*taken_]));
     taken_ = first();
     if (!taken_) return nullptr;
@@ -62,7 +62,7 @@ Result<void> RecordStream::advance(Part& part) {
   };
   const auto* read = part.head ? std::get_if<McapMessage>(&*part.head) : nullptr;
   if (read != nullptr) {
-    // The numbers that the part has behind it. waits() asks only for those that are still to come.
+    // Numbers below `end` are read already. waits() only asks for later numbers.
     part.end[read->channel] = std::uint64_t{read->sequence} + 1;
     ++part.place;
   }
@@ -70,13 +70,14 @@ Result<void> RecordStream::advance(Part& part) {
   if (!part.reader.is_mcap()) {
     return Failure(Error{part.file.path(), 0, "an MCAP file", "another beginning"});
   }
-  // `place` counts within a chunk; at a new chunk it begins again.
+  // `place` counts messages within a chunk, so it begins again at each chunk.
   if (std::exchange(part.chunk, part.reader.at()) != part.reader.at()) part.place = 0;
   return {};
 }
 
-/// Chooses the part with the next record: first the messages with a checksum, then those that need
-/// not wait, then the earliest. So the channels of a device keep their common order.
+/// Chooses the part with the next record. Messages with a checksum come first, then messages that
+/// need not wait, then the earliest log time. The channels of a device therefore keep their common
+/// order.
 std::optional<std::size_t> RecordStream::first() const {
   std::optional<std::size_t> first;
   std::tuple<bool, bool, std::uint64_t> least;
@@ -84,8 +85,7 @@ std::optional<std::size_t> RecordStream::first() const {
     const Part& part = parts_[k];
     if (!part.head) continue;
     const auto* message = std::get_if<McapMessage>(&*part.head);
-    // Records without a time come first: they are definitions and metadata that later messages
-    // need.
+    // Definitions and metadata have no time. They come first, because later messages need them.
     const std::tuple rank(part.reader.in_truncated_chunk(),
                           message != nullptr && waits(part, *message),
                           message == nullptr ? 0 : message->log_time);
@@ -96,7 +96,7 @@ std::optional<std::size_t> RecordStream::first() const {
   return first;
 }
 
-/// Returns whether another part still has a lower number of the message's channel.
+/// True if another part has a lower number of the message's channel that is not read yet.
 bool RecordStream::waits(const Part& part, const McapMessage& message) const {
   return std::any_of(parts_.begin(), parts_.end(), [&](const Part& other) {
     if (&other == &part || !other.head) return false;
@@ -116,7 +116,7 @@ bool RecordStream::passes(Part& part) {
   if (const auto* channel = std::get_if<McapChannel>(&record)) {
     return !unchecked || !checked_.channels.contains(channel->id);
   }
-  // Parts repeat the metadata and attachments of the first file.
+  // Parts repeat the metadata and attachments of the first file, so only the first copy passes.
   if (const auto* attachment = std::get_if<McapAttachment>(&record)) {
     return is_first("attachment " + attachment->name);
   }
@@ -125,24 +125,24 @@ bool RecordStream::passes(Part& part) {
   }
   const auto* metadata = std::get_if<McapMetadata>(&record);
   if (metadata == nullptr) return true;
-  // A part that recover made of a truncated file says nothing about the end of later parts.
+  // A truncated part that recover repaired is not the recording's end if later parts exist.
   const Ending end = ending_of(*metadata);
   if (end == Ending::ended || is_last_part()) ending_ = std::max(ending_, end);
   return is_first("metadata " + metadata->name);
 }
 
-/// Returns whether no other part before had a record of this name. A file of another program may
-/// have several.
+/// True if no earlier part has a record of this name. A file of another program may have several
+/// such records.
 bool RecordStream::is_first(const std::string& name) {
   return names_.try_emplace(name, *taken_).first->second == *taken_;
 }
 
-/// Damaged bytes of a truncated chunk may look like a message with any number. The number is
-/// believed if it is at most a little above the last number of its channel.
+/// Damaged bytes of a truncated chunk may look like a message with any number. Such a message is
+/// accepted only if its number is at most most_ahead above the last number of its channel.
 bool RecordStream::passes(Part& part, const McapMessage& message) {
-  constexpr std::uint32_t most_ahead = 1024;  // more messages of a device than a chunk holds
+  constexpr std::uint32_t most_ahead = 1024;  // a chunk contains fewer messages of a device
   const auto last = numbers_.last(message.channel);
-  // Files of other programs are not judged by numbers, because their numbers need not be unique.
+  // Files of other programs are not checked by numbers, because their numbers may repeat.
   if (part.is_ours && numbers_.has(message)) {
     ++repeated_;
     return false;
@@ -152,7 +152,8 @@ bool RecordStream::passes(Part& part, const McapMessage& message) {
     ++part.impossible;
     return false;
   }
-  // Messages that fill a gap late are still given to the caller, and reported once.
+  // A message that fills a gap late is returned, too. A finding then says that messages are out of
+  // order.
   if (part.is_ours && last && message.sequence < *last) in_order_ = false;
   numbers_.add(message);
   ++part.passed;
@@ -162,9 +163,10 @@ bool RecordStream::passes(Part& part, const McapMessage& message) {
 
 std::uint64_t RecordStream::missing() const {
   const Part& part = parts_.front();
-  // Other programs number their messages in other ways.
+  // Other programs may number messages differently.
   const std::uint64_t by_number = part.is_ours ? numbers_.missing() : 0;
-  // The file's own statistics count messages that numbers can't know of: those at its very end.
+  // The file's own statistics count all messages, also those missing at the end, which numbers
+  // don't show.
   const bool is_counted =
       parts_.size() == 1 && part.reader.closed() && !part.reader.is_summary_damaged();
   return is_counted && part.counted > part.passed ? std::max(by_number, part.counted - part.passed)
@@ -184,7 +186,7 @@ std::uint64_t RecordStream::skipped() const {
 }
 
 Ending RecordStream::ending() const {
-  // The last part decides, since only it may have the recording's end.
+  // Only the last part may contain the recording's end, so it decides.
   return parts_.back().reader.closed() ? ending_ : std::max(ending_, Ending::truncated);
 }
 

@@ -21,8 +21,9 @@ namespace kinalign {
 
 namespace {
 
-/// The number of messages and their CRC-32, in order: channel, number, both times and payload. It
-/// is made once while writing and once while reading again; both must be equal.
+/// The number of messages and the CRC-32 of channel, number, both times and payload of all
+/// messages. It is computed while writing and again while reading the new file. Both results must
+/// be equal.
 struct Contents {
   std::uint64_t messages = 0;
   std::uint32_t crc = 0;
@@ -40,15 +41,15 @@ struct Contents {
   bool operator==(const Contents&) const = default;
 };
 
-/// Writes the records of a stream into the new file. Definitions are only remembered, and each
-/// chunk repeats those that its messages need. Metadata and attachments stand outside of chunks, so
-/// the open chunk is closed before them.
+/// Writes the records of a stream into the new file. Definitions are remembered, and each chunk
+/// gets the definitions that its messages need. Metadata and attachments stand outside of chunks,
+/// so the open chunk is closed before them.
 class Copier {
  public:
   Copier(OutputFile& out, const RecordingParts& parts) : writer_(mcap_store(out)), parts_(parts) {}
 
   Result<void> take(const McapRecord& record) {
-    // A file whose header is damaged still gets one.
+    // The new file gets a header even if the header of the old file is damaged.
     if (!std::holds_alternative<McapHeader>(record)) KA_TRY(begin({}));
     return std::visit([this](const auto& one) { return add(one); }, record);
   }
@@ -65,7 +66,7 @@ class Copier {
   const Contents& contents() const { return contents_; }
   std::size_t channels() const { return copied_.size(); }
   std::uint64_t nameless() const { return undefined_; }
-  /// Returns whether the files contain nothing but a header and definitions.
+  /// True if the files contain only a header and definitions.
   bool is_empty() const { return contents_.messages == 0 && is_empty_; }
 
  private:
@@ -73,8 +74,8 @@ class Copier {
     return writer_.size() == 0 ? writer_.begin(header) : Result<void>();
   }
   Result<void> add(const McapHeader& header) { return begin(header); }
-  // A damaged summary must not override the definitions in the data section, so the first
-  // definition is kept.
+  // The first definition is kept, so that a damaged summary can't override the definitions in the
+  // data section.
   Result<void> add(const McapSchema& schema) {
     schemas_.try_emplace(schema.id, schema);
     return {};
@@ -95,7 +96,8 @@ class Copier {
     return writer_.write(attachment);
   }
   Result<void> add(const McapMessage& message) {
-    // A message whose channel has no definition can't be read by anybody, so it is only counted.
+    // Readers can't decode a message without a definition of its channel. Such a message is left
+    // out and counted.
     const auto channel = channels_.find(message.channel);
     if (channel == channels_.end()) {
       ++undefined_;
@@ -109,7 +111,7 @@ class Copier {
     }
     chunk_.add(message);
     contents_.add(message);
-    // The recorder closes its chunks at the same size.
+    // The recorder uses the same size of chunks.
     constexpr std::size_t chunk_bytes = std::size_t{1} << 20;
     return chunk_.size() < chunk_bytes ? Result<void>() : close_chunk();
   }
@@ -118,7 +120,7 @@ class Copier {
     return {};  // the new file gets its own summary
   }
 
-  /// Changes the metadata of one part so that it describes all parts together.
+  /// Changes the metadata of one part so that they describe all parts together.
   McapMetadata of_all_parts(McapMetadata metadata) const {
     if (parts_.size() == 1) return metadata;
     std::set<int> joined;
@@ -126,8 +128,7 @@ class Copier {
       joined.insert(part.facts->part);
       joined.insert(part.facts->joined.begin(), part.facts->joined.end());
     }
-    // The joined file stands for all of these parts, so that none of them is read in addition to
-    // it.
+    // The joined file names all parts that it contains, so that no part is read in addition.
     metadata.texts["part"] = std::to_string(*joined.begin());
     metadata.texts["joined"] = fmt::format("{}", fmt::join(joined, " "));
     return metadata;
@@ -148,8 +149,8 @@ class Copier {
   bool is_empty_ = true;
 };
 
-/// Checks, before anything is read, that the files are MCAP files and that none of them, nor a part
-/// in their folders, is overwritten.
+/// Before anything is read, checks that the files are MCAP files. Also checks that `out` overwrites
+/// neither these files nor another part in their folders.
 Result<void> check_names(FileSystem& files, const std::vector<std::string>& paths,
                          const std::string& out) {
   for (const std::string& path : paths) {
@@ -168,7 +169,7 @@ Result<void> check_names(FileSystem& files, const std::vector<std::string>& path
   return {};
 }
 
-/// Reads the new file again before it gets its name. Every byte of it is covered by a checksum.
+/// Reads the new file before it gets its name. A checksum covers every byte of it.
 Result<void> prove(const OutputFile& file, const Copier& copier, const Progress& progress) {
   std::string buffer(InputFile::piece_size, '\0');
   std::uint64_t at = 0;
@@ -183,8 +184,8 @@ Result<void> prove(const OutputFile& file, const Copier& copier, const Progress&
   while (const auto record = KA_TRY(pull(reader, next_piece))) {
     if (const auto* message = std::get_if<McapMessage>(&*record)) read.add(*message);
   }
-  // All three are needed: the index was reached, nothing was damaged, and the messages are the
-  // same.
+  // All three conditions are needed: the end was reached, nothing was damaged, and the messages are
+  // the same.
   if (reader.closed() && reader.findings().empty() && read == copier.contents()) return {};
   return Failure(Error{file.path(), 0,
                        fmt::format("{} messages, read again", copier.contents().messages),
@@ -196,8 +197,8 @@ Result<void> prove(const OutputFile& file, const Copier& copier, const Progress&
 Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::string>& paths,
                                     const std::string& out, Overwrite overwrite,
                                     const Progress& progress) {
-  // The names are checked first: a wrong `out` must not cost the reading of a long recording, nor a
-  // file.
+  // The names are checked first, so that a wrong `out` does not cost the reading of a long
+  // recording or overwrite a file.
   KA_TRY(check_names(files, paths, out));
   OutputFile file = KA_TRY(OutputFile::create(files, out, overwrite));
   const RecordingParts parts = KA_TRY(find_parts(files, paths));
@@ -205,12 +206,12 @@ Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::st
   Copier copier(file, parts);
   while (const McapRecord* record = KA_TRY(stream.next())) KA_TRY(copier.take(*record));
   const std::string& first = parts.front().path;
-  // A new file of nothing would look like a recovery.
+  // A new file without messages would look like a successful recovery.
   if (copier.is_empty()) {
     return Failure(Error{first, 0, "a recording with at least one readable message", "none"});
   }
   KA_TRY(copier.finish(stream.ending()));
-  // Until commit() the new file has a temporary name, so a failure here leaves nothing behind.
+  // Before commit() the new file has a temporary name, so a failure leaves no file.
   KA_TRY(prove(file, copier, progress));
 
   Recovered done{copier.contents().messages, copier.channels(), stream.unchecked(),

@@ -10,12 +10,12 @@ namespace kinalign {
 
 namespace {
 
-/// Decodes a node's frame or request. Absent if the message is neither, or damaged.
+/// Decodes a node's frame or request. The result is empty if the message is neither, or is damaged.
 std::optional<AcceptedFrame> frame_in(const RecordedMessage& message) {
   Envelope envelope;
   if (open_envelope(octets(message.payload), envelope) != NodeRefusal::none) return std::nullopt;
-  // The recorder checked the node's key when the datagram arrived. The key is not stored in the
-  // recording, so it can't be checked again.
+  // The recorder checked the datagram with the node's key. A recording does not contain the key, so
+  // the check can't be repeated.
   envelope.mac_was_checked = true;
   AcceptedFrame out;
   out.number = envelope.origin.sequence;
@@ -37,7 +37,7 @@ std::optional<AcceptedFrame> frame_in(const RecordedMessage& message) {
 
 }  // namespace
 
-// The exchange is remembered until the next message, which must be the accepted datagram.
+// Keeps the exchange until the next message, which must be the accepted datagram.
 AnyExchange AcceptedFrames::take_exchange(const RecordedMessage& message) {
   if (auto recorded = to_exchange(message.payload)) {
     Exchange& e = recorded->exchange;
@@ -54,14 +54,15 @@ AnyExchange AcceptedFrames::take_exchange(const RecordedMessage& message) {
   return {};
 }
 
-// The message must be the one that follows its exchange: same arrival, and same counter or number.
+// The message must directly follow its exchange, with the same arrival and the same counter or
+// number.
 std::optional<AcceptedFrame> AcceptedFrames::take(const RecordedMessage& message) {
-  // An exchange is used once, whether its datagram follows or not.
+  // An exchange is used only once, whether its datagram follows or not.
   const auto accepted = std::exchange(accepted_, std::nullopt);
   const bool in_time = accepted && accepted->at == message.arrival;
   if (in_time && accepted->confirms) return std::nullopt;  // a confirm has no sample
   auto frame = frame_in(message);
-  // The number in a datagram has 32 bits; the exchange has the whole number.
+  // The number in a datagram has 32 bits. The exchange contains the unwrapped number.
   const auto low = [](std::int64_t number) { return static_cast<std::uint32_t>(number); };
   const bool same = in_time && frame && accepted->n_tx == frame->n_tx &&
                     (accepted->n_tx || low(accepted->number) == low(frame->number));

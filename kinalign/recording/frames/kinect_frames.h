@@ -17,22 +17,24 @@
 
 namespace kinalign {
 
-/// The frames of one sensor, in the order of arrival. A sender over TCP may cut a message anywhere,
-/// so each channel has a decoder that keeps the incomplete rest.
+/// The frames of one sensor, in the order of arrival. Over TCP a message may be cut anywhere, so
+/// each channel has a decoder that keeps the incomplete message.
 class KinectFrames {
  public:
-  /// Appends the frames that the message completes. The single parts are appended to `parts`.
+  /// Appends to `out` the frames that the message completes. Appends to `parts` each part of a
+  /// frame.
   void take(const RecordedMessage& message, std::vector<JoinedKinectFrame>& out,
             std::vector<KinectFrame>* parts) {
     messages_.clear();
     KinectStreamDecoder& decoder = decoders_[message.channel_id];
     decoder.feed(octets(message.payload), messages_);
-    // a datagram contains whole messages
+    // A datagram contains whole messages, so the decoder must not wait for more bytes.
     if (is_datagrams(message.channel->transport)) decoder.finish(messages_);
     for (KinectMessage& one : messages_) {
       auto* frame = std::get_if<KinectFrame>(&one);
       if (frame == nullptr) continue;
-      // The first frame decides, so a second sensor on the same port does not mix with it.
+      // The first frame selects the sensor. Frames of another sensor on the same port are not mixed
+      // in.
       if (!sensor_) sensor_ = frame->origin.sensor;
       if (frame->origin.sensor != *sensor_) {
         ++of_other_sensors;
@@ -46,11 +48,11 @@ class KinectFrames {
   KinectFrameCounts counts() const { return joiner_.counts(); }
   const std::optional<KinectOverlap>& overlap() const { return joiner_.overlap(); }
 
-  /// Frames of other sensors, which were left out. The first frame selects the sensor.
+  /// The number of frames of other sensors, which were left out.
   std::uint64_t of_other_sensors = 0;
 
  private:
-  // by channel: one sender or connection each
+  // One decoder for each channel, which is a sender or a connection.
   std::map<std::uint16_t, KinectStreamDecoder> decoders_;
   std::vector<KinectMessage> messages_;
   std::optional<std::uint32_t> sensor_;

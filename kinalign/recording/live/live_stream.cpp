@@ -14,16 +14,17 @@ namespace kinalign {
 
 namespace {
 
-// A stamp that is further from its arrival comes from a clock that is wrong.
+// If a stamp differs from its arrival by more than these limits, its clock is wrong.
 constexpr Duration most_ahead = std::chrono::seconds(1);
 constexpr Duration most_behind = std::chrono::seconds(10);
 
-/// Returns whether a stamp is plausible for its arrival.
+/// True if a stamp is plausible for its arrival.
 bool is_credible(Time stamp, Time arrival) {
   return stamp <= arrival + most_ahead && stamp >= arrival - most_behind;
 }
 
-/// The bytes come from the address that the user gave with --live, so errors name that flag.
+/// The error for bytes that are not a live stream. The user gave the address with --live, so the
+/// error names this flag.
 Failure no_stream(std::string found) {
   return Failure(Error{"--live", 0, "the stream of kinalign record --live-port", std::move(found)});
 }
@@ -33,29 +34,29 @@ Failure no_stream(std::string found) {
 struct LiveStream::Channel {
   RawChannel raw;
   bool is_marks = false;
-  NodeDevice* node = nullptr;  // nullptr: the channel belongs to no node
+  NodeDevice* node = nullptr;  // nullptr if the channel does not belong to a node
   KinectDevice* kinect = nullptr;
   std::optional<std::uint32_t> number;  // number of the newest message
 };
 
-/// The pieces of one node. Its frames need their exchanges, which come on another channel of the
-/// same node.
+/// One node. Its frames need their clock exchanges, which arrive on another channel of the same
+/// node.
 struct LiveStream::NodeDevice {
   RawChannel raw;
   AcceptedFrames frames;
   LiveClock clock;
 };
 
-/// A Kinect has two clocks, as in kinect_rows.cpp: the sender's, from its pings, and the sensor's,
-/// from the times at which the sender received its frames.
+/// One Kinect. It has two clocks, as in kinect_rows.cpp. Pings measure the sender's clock. The
+/// sensor's clock is measured by the times at which the sender received frames.
 struct LiveStream::KinectDevice {
   RawChannel raw;
   KinectFrames frames;
   std::vector<JoinedKinectFrame> joined;
   KinectPerson person{std::nullopt};
   LiveClock sender, sensor;
-  std::uint32_t epoch = 0;            // of the host's axis
-  HostTime newest = HostTime::min();  // when the sender received its newest frame
+  std::uint32_t epoch = 0;            // number of suspensions of the host, see RecordedExchange
+  HostTime newest = HostTime::min();  // time at which the sender received its newest frame
 };
 
 LiveStream::LiveStream() = default;
@@ -63,11 +64,11 @@ LiveStream::~LiveStream() = default;
 
 Result<void> LiveStream::take(std::string_view bytes, LiveData& news) {
   reader_.feed(bytes);
-  // Records stay valid until the next one only; their contents are copied into `news`.
+  // A record is valid until the next one only, so its contents are copied into `news`.
   while (const auto record = reader_.next()) KA_TRY(take_record(*record, news));
   if (!reader_.is_mcap()) return no_stream("another beginning");
-  // Over TCP nothing is damaged on the way, so any finding means that the bytes are not a stream of
-  // record.
+  // TCP delivers bytes undamaged, so any finding means that the bytes are not a live stream of
+  // kinalign record.
   if (reader_.findings().empty()) return {};
   return no_stream(reader_.findings().front().what.found);
 }
@@ -89,9 +90,9 @@ Result<void> LiveStream::take_record(const McapRecord& record, LiveData& news) {
   return {};
 }
 
-// A channel without raw payloads is only remembered.
+// Registers a channel. A channel without device data is only remembered.
 Result<void> LiveStream::define(const McapChannel& channel) {
-  // The stream may repeat definitions; a channel keeps its first one.
+  // The stream may repeat definitions. The first definition of a channel is kept.
   if (channels_.contains(channel.id)) return {};
   if (channels_.size() == most_channels) {
     return no_stream("more than " + std::to_string(most_channels) + " channels");
@@ -117,21 +118,22 @@ Result<void> LiveStream::define(const McapChannel& channel) {
   return {};
 }
 
-// The checks refuse a stream that is not kinalign's before its times are used.
+// Before the times of a message are used, checks refuse a stream that is not kinalign's.
 Result<void> LiveStream::take_message(const McapMessage& message, LiveData& news) {
-  // Without the anchor no log time can be converted.
+  // The anchor is needed to convert log times.
   if (!facts_) return no_stream("messages before the recording's metadata");
   if (message.log_time > static_cast<std::uint64_t>(latest_log_time))
     return no_stream("a time after 2096");
   const Time arrival = utc_time(static_cast<std::int64_t>(message.log_time));
   if (now_ && arrival > *now_ + longest_silence) return no_stream("a minute without any message");
-  // Channels are merged by the recorder, so an arrival may be a little earlier than the newest.
+  // The recorder merges channels, so an arrival may be slightly earlier than the newest arrival.
   now_ = now_ ? std::max(*now_, arrival) : arrival;
   const auto found = channels_.find(message.channel);
   if (found == channels_.end()) return {};
   Channel& channel = found->second;
   ++counts_.messages;
-  // Without a number before this message, or if the numbers went back, nothing is missing.
+  // If this is the first message of a channel, or if the numbers went back, no message counts as
+  // lost.
   const auto steps = steps_between(channel.number.value_or(message.sequence), message.sequence, 32);
   if (steps > 1) counts_.lost += static_cast<std::uint64_t>(steps - 1);
   channel.number = message.sequence;
@@ -147,7 +149,8 @@ Result<void> LiveStream::take_message(const McapMessage& message, LiveData& news
   return {};
 }
 
-// If the clock is not known yet, a sample is stamped by its arrival and age.
+// Takes a message of a node. If the node's clock is not known yet, a sample is stamped by arrival
+// and age.
 void LiveStream::take_node(NodeDevice& device, const RecordedMessage& message, LiveData& news) {
   if (message.is_exchange()) {
     const AnyExchange any = device.frames.take_exchange(message);
@@ -163,7 +166,8 @@ void LiveStream::take_node(NodeDevice& device, const RecordedMessage& message, L
     const auto at =
         frame->n_tx ? device.clock.host_from_node(frame->boot, *frame->n_tx - age) : std::nullopt;
     const Time stamp = at ? on_axis(at->time) : arrival - age;
-    // A sample that can't be right is counted here, because no later step sees its raw values.
+    // Samples with impossible values are counted here, because later steps do not see the raw
+    // values.
     const SampleFaults wrong = faults(sample);
     if (!is_credible(stamp, arrival) || wrong.not_finite || wrong.zero_orientation) {
       ++counts_.refused;
@@ -173,12 +177,13 @@ void LiveStream::take_node(NodeDevice& device, const RecordedMessage& message, L
   }
 }
 
-// An exchange updates the sender's clock. Other messages may complete frames.
+// Takes a message of a Kinect. An exchange updates the sender's clock. Other messages may complete
+// frames.
 void LiveStream::take_kinect(KinectDevice& device, const RecordedMessage& message, LiveData& news) {
   if (message.is_exchange()) {
     if (auto recorded = to_exchange(message.payload)) {
-      // Frames do not state the epoch of the host's axis, so that of the newest exchange is used
-      // for them.
+      // Frames do not contain the number of the host's suspensions, so they use the number in the
+      // newest exchange.
       device.epoch = recorded->epoch;
       recorded->exchange.boot = boot_in_epoch(recorded->exchange.boot, recorded->epoch);
       device.sender.push(recorded->exchange);
@@ -190,8 +195,8 @@ void LiveStream::take_kinect(KinectDevice& device, const RecordedMessage& messag
   for (const JoinedKinectFrame& one : device.joined) take_frame(device, one.frame, message, news);
 }
 
-// If the sender's clock is not known yet, the arrival minus the time that the frame spent in the
-// sender is used.
+// Stamps a frame. If the sender's clock is not known yet, the stamp is the arrival minus the time
+// between the sender's receiving and sending of the frame.
 void LiveStream::take_frame(KinectDevice& device, const KinectFrame& frame,
                             const RecordedMessage& message, LiveData& news) {
   const BootKey boot = boot_in_epoch(frame.origin.session, device.epoch);
@@ -201,13 +206,13 @@ void LiveStream::take_frame(KinectDevice& device, const KinectFrame& frame,
     return message.arrival -
            (kinect_sender_time(frame.sent_ticks) - kinect_sender_time(frame.taken_ticks));
   }();
-  device.newest = std::max(device.newest, sender_had);  // the clock needs increasing arrivals
+  device.newest = std::max(device.newest, sender_had);  // the clock needs rising arrivals
   const NodeTime ticks = kinect_sender_time(frame.device_ticks);
   device.sensor.push_up(boot, ticks, device.newest);
   const auto at = device.sensor.host_from_node(boot, ticks);
   const Time arrival = on_axis(message.arrival);
   LiveKinectRow row{&device.raw, arrival, {}};
-  // The id 0 stands for no body: without the person the row has no joints.
+  // If the person is not in the frame, id 0 gives a row without joints.
   append_kinect_row(frame, device.person(frame).value_or(0), row.row);
   row.row.stamps.back() = on_axis(at ? at->time : sender_had);
   if (is_credible(row.row.stamps.back(), arrival)) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decodes the stream of `kinalign record --live-port` as it arrives: samples of nodes, frames of a
-// Kinect, and marks. Stamps are on the axis of the recording's log times (UTC). They need no later
-// message: they come from the live clock or, until that is known, from the arrival.
+// Decodes the stream of `kinalign record --live-port` while it arrives: samples of nodes, frames of
+// a Kinect, and marks. Stamps are on the axis of the recording's log times (UTC). A stamp never
+// waits for later messages. It comes from the live clock or, if that clock is not known yet, from
+// the arrival.
 #pragma once
 
 #include "kinalign/clock/live/live_clock.h"
@@ -21,27 +22,27 @@
 
 namespace kinalign {
 
-/// One sample of a node, stamped, with the arrival of its datagram.
+/// One sample of a node, with its stamp and the arrival of its datagram.
 struct LiveNodeSample {
-  const RawChannel* node = nullptr;  // valid as long as the stream object
+  const RawChannel* node = nullptr;  // valid as long as the LiveStream exists
   Time stamp{}, arrival{};
-  NodeSample sample;  // all values are finite, and an orientation is not zero
+  NodeSample sample;  // all values are finite, and no orientation is zero
 };
 
-/// One row of joints (kinect_joints) of the followed person.
+/// One row of joints (kinect_joints) of the person that kinalign follows.
 struct LiveKinectRow {
   const RawChannel* kinect = nullptr;
   Time arrival{};
   PointFrames row;  // one row, with its stamp
 };
 
-/// A mark and its arrival, on the same axis as all stamps.
+/// A mark and its arrival, on the same time axis as all stamps.
 struct LiveMark {
   RecordedMark mark;
   Time at{};
 };
 
-/// The content of a piece of the stream, each kind in the order of arrival.
+/// The content of one piece of the stream. Each kind is in the order of arrival.
 struct LiveData {
   std::vector<LiveNodeSample> samples;
   std::vector<LiveKinectRow> rows;
@@ -51,20 +52,20 @@ struct LiveData {
 /// Counts since the beginning of the stream.
 struct LiveStreamCounts {
   std::uint64_t messages = 0;
-  std::uint64_t lost = 0;     // missing in the stream, because this program read too slowly
-  std::uint64_t refused = 0;  // samples and frames with an implausible stamp or impossible values
+  std::uint64_t lost = 0;     // missing messages, because the reading program was too slow
+  std::uint64_t refused = 0;  // samples and frames with an implausible stamp or value
 };
 
-/// One connection to the recorder. Devices are created when their channels are defined and live as
-/// long as the object, so the pointers in LiveData stay valid. Memory is limited: by the size of a
-/// record, the number of channels, and the clocks' own limits.
+/// One connection to the recorder. Devices are created when their channels are defined, and exist
+/// as long as this object. The pointers in LiveData therefore stay valid. The memory is limited by
+/// the size of a record, the number of channels, and the limits of the clocks.
 class LiveStream {
  public:
-  // Bytes of one record.
+  // The limit on a record, bytes.
   static constexpr std::uint64_t most_record = std::uint64_t{1} << 20;
   static constexpr std::size_t most_channels = 1024;
-  /// The recorder sends a message every second. A longer gap between arrivals means that the stream
-  /// does not come from the recorder.
+  /// The recorder sends a message every second. If arrivals have a longer gap, the stream is not
+  /// from the recorder.
   static constexpr Duration longest_silence = std::chrono::seconds(60);
 
   LiveStream();
@@ -73,16 +74,16 @@ class LiveStream {
   ~LiveStream();
 
   /// Takes the next bytes and appends their content to `news`. Fails if they are not a stream of
-  /// kinalign record; the object must not be used again then.
+  /// kinalign record. After a failure the object must not be used again.
   Result<void> take(std::string_view bytes, LiveData& news);
 
-  /// Call when no more bytes come.
+  /// Call this when the stream has ended.
   void end();
-  /// Returns whether the stream was ended properly by record.
+  /// True if kinalign record ended the stream properly.
   bool closed() const { return reader_.closed(); }
-  /// Arrival of the newest message; absent before the first one.
+  /// The arrival of the newest message; empty before the first message.
   std::optional<Time> now() const { return now_; }
-  /// The facts of the recording. Absent before the beginning was read.
+  /// The facts of the recording; empty until they have arrived.
   const std::optional<RecordingFacts>& facts() const { return facts_; }
   const LiveStreamCounts& counts() const { return counts_; }
 
