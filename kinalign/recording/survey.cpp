@@ -14,8 +14,8 @@ namespace kinalign {
 
 namespace {
 
-/// The sensors of a tracker that a datagram contains rotations of, one bit each. 0 if the datagram
-/// is not a tracker's.
+/// The sensors whose rotations the datagram contains, one bit each. The result is 0 if the datagram
+/// is not from a tracker.
 std::uint32_t rotating_sensors(std::string_view payload) {
   std::uint32_t sensors = 0;
   SlimeDatagram datagram;
@@ -28,18 +28,18 @@ std::uint32_t rotating_sensors(std::string_view payload) {
   return sensors;
 }
 
-// A limit on memory: a damaged or foreign file may name any number of senders.
+// This limits the memory, because a damaged file may name any number of senders.
 constexpr std::size_t most_counted = 4096;
 
-/// Keeps the counts in place of earlier ones of the same key. Counts grow within a take, so the
-/// last message of a sender says all. Messages that can't be decoded are damaged and are left out.
+/// Replaces earlier counts with the same key. Counts only grow within a take, so the last message
+/// of a sender contains everything. A damaged message that can't be decoded is ignored.
 template <class Key, class Counted>
 void keep_last(const Key& key, const Counted& counted, std::map<Key, Counted>& last) {
   if (last.size() < most_counted || last.contains(key)) last.insert_or_assign(key, counted);
 }
 
-/// Adds the places of all nodes, including nodes that were never received. A lab.toml that cannot
-/// be read is ignored.
+/// Adds the places of all nodes in lab.toml, even of nodes that never sent data. A lab.toml that
+/// can't be read is ignored.
 void add_places(std::string_view lab_toml, std::map<std::string, std::string>& places) {
   const auto devices = read_devices(lab_toml, "lab.toml");
   if (!devices) return;
@@ -56,8 +56,8 @@ RecordingSurvey RecordingSurveyor::finish(const std::string& path, const RecordS
     channel.missing = stream.numbers().missing(id);
     survey_.channels.push_back(std::move(channel));
   }
-  // Topics sort by stream and node; the stable sort keeps channels of equal topic in the order of
-  // their ids.
+  // A topic begins with stream and node, so sorting by topic groups them. Channels with the same
+  // topic stay in the order of their ids.
   std::stable_sort(survey_.channels.begin(), survey_.channels.end(),
                    [](const auto& a, const auto& b) { return a.channel.topic < b.channel.topic; });
   for (auto& [key, counted] : senders_) survey_.senders.push_back(std::move(counted));
@@ -72,11 +72,11 @@ RecordingSurvey RecordingSurveyor::finish(const std::string& path, const RecordS
   return std::move(survey_);
 }
 
-/// A damaged summary must not override the definitions in the data section, so the first
-/// definition is kept.
+/// Adds a channel. The first definition is kept, so that a damaged summary can't override the
+/// definitions in the data section.
 void RecordingSurveyor::add(const McapChannel& channel) {
   const auto [known, is_new] = channels_.try_emplace(channel.id);
-  // A channel may have been created by a message before its definition; it then has no topic yet.
+  // A message before the definition may have created the channel, which then has no topic yet.
   if (!is_new && !known->second.channel.topic.empty()) return;
   known->second.channel = channel;
   const auto raw = to_raw(channel);
@@ -89,7 +89,7 @@ void RecordingSurveyor::add(const McapMetadata& metadata) {
   if (const auto end = to_end(metadata)) survey_.end = end;
   if (survey_.facts) return;
   survey_.facts = to_facts(metadata);
-  // The anchor is the first of the pairs by which steps of the wall clock are found.
+  // The clock pairs show steps of the wall clock. The anchor is the first pair.
   if (survey_.facts) clock_.push_back(survey_.facts->anchor);
 }
 
@@ -101,7 +101,7 @@ void RecordingSurveyor::add(const McapAttachment& attachment) {
 void RecordingSurveyor::add(const McapMessage& message) {
   ++survey_.messages;
   ChannelSurvey& channel = channels_[message.channel];
-  channel.channel.id = message.channel;  // the channel may have no definition
+  channel.channel.id = message.channel;  // needed if the channel has no definition
   if (channel.messages == 0) channel.first = message.log_time;
   channel.first = std::min(channel.first, message.log_time);
   channel.last = std::max(channel.last, message.log_time);
@@ -111,13 +111,13 @@ void RecordingSurveyor::add(const McapMessage& message) {
     channel.sensors |= rotating_sensors(message.data);
   }
   kinects_.take(message.channel, message.data);
-  // Files of other programs may use the same topics with other contents.
+  // Files of other programs may use the same topics for other contents.
   if (survey_.facts && channel.channel.message_encoding == "json") {
     add_own(channel.channel.topic, message);
   }
 }
 
-/// Takes messages of the recorder itself: counts, marks and clocks.
+/// Takes a message of the recorder itself: counts, a mark or a pair of clocks.
 void RecordingSurveyor::add_own(std::string_view topic, const McapMessage& message) {
   if (topic == sender_counts_topic) {
     const auto one = to_counted_sender(message.data);
@@ -153,7 +153,7 @@ Findings judge_end(const std::string& path, bool is_ours, Ending ending) {
 
 Result<bool> is_recording(FileSystem& files, const std::string& path) {
   const InputFile file = KA_TRY(InputFile::open(files, path));
-  // A file shorter than the magic is no MCAP file.
+  // A file that is shorter than the magic is not an MCAP file.
   std::array<char, mcap_magic.size()> head{};
   const std::size_t got = KA_TRY(file.read_at(0, head));
   return looks_like_recording(std::string_view(head.data(), got));

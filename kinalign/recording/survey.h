@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surveys a recording: its content and whether it is complete. All parts are read, and every
-// checksum is checked. Truncated files and MCAP files of other programs can be surveyed too.
+// Surveys a recording: lists its content and checks whether it is complete. All parts are read, and
+// every checksum is checked. Truncated files and MCAP files of other programs can be surveyed, too.
 #pragma once
 
 #include "kinalign/clock/utc_anchor.h"
@@ -22,48 +22,49 @@
 
 namespace kinalign {
 
-/// One channel of the recording. Channels without messages are included, since a device that sent
-/// nothing is a fact, too.
+/// One channel of the recording. Channels without messages are included, so that a device without
+/// data is visible.
 struct ChannelSurvey {
   McapChannel channel;
   std::uint64_t messages = 0, bytes = 0;  // bytes of payload
   std::uint64_t first = 0, last = 0;      // lowest and highest log time, ns
-  std::uint64_t missing = 0;              // numbers missing between the first and the last
-  std::uint32_t sensors = 0;  // sensors of a SlimeVR tracker with rotations, one bit each
+  std::uint64_t missing = 0;              // numbers missing between the first and the last message
+  std::uint32_t sensors = 0;  // sensors of a SlimeVR tracker that sent rotations, one bit each
 };
 
-/// All that `info` and `check` say of a recording. It is also the basis of the manifest that is
-/// made of it.
+/// Everything that the commands `info` and `check` print about a recording. A manifest of the
+/// recording is also made from it.
 struct RecordingSurvey {
-  std::optional<RecordingFacts> facts;  // absent: not a recording of kinalign
+  std::optional<RecordingFacts> facts;  // empty: not a recording of kinalign
   std::vector<ChannelSurvey> channels;  // sorted by topic
   std::uint64_t messages = 0;
   std::uint64_t unchecked = 0;           // messages without a checksum
-  std::vector<std::string> truncated;    // files without index or end
-  std::vector<std::string> attachments;  // their names
-  std::vector<WallClockStep> steps;      // of the recording machine's wall clock
+  std::vector<std::string> truncated;    // paths of files without index or end
+  std::vector<std::string> attachments;  // names of the attachments
+  std::vector<WallClockStep> steps;      // steps of the recording machine's wall clock
   ExpectedDevices expected;
-  std::map<std::string, std::string> places;  // places of nodes, if the lab names them, by "imu/7"
-  std::optional<RecordingEnd> end;     // absent: truncated, or continued in a file that is missing
-  Ending ending = Ending::none;        // `truncated` if the last file is
-  std::vector<CountedSender> senders;  // the last counts of each sender
-  std::vector<CountedPort> ports;      // the last counts of each port
-  std::vector<std::pair<RecordedMark, std::uint64_t>> marks;  // with their log times, ns
-  std::uint64_t more_marks = 0;                               // marks beyond most_marks
-  std::uint64_t bytes = 0;                                    // of all files
+  std::map<std::string, std::string> places;  // places of nodes in lab.toml, by "imu/7"
+  std::optional<RecordingEnd> end;            // empty: truncated, or continued in a missing file
+  Ending ending = Ending::none;               // `truncated` if the last file is truncated
+  std::vector<CountedSender> senders;         // the last counts of each sender
+  std::vector<CountedPort> ports;             // the last counts of each port
+  std::vector<std::pair<RecordedMark, std::uint64_t>> marks;  // marks and their log times, ns
+  std::uint64_t more_marks = 0;                               // marks above most_marks, not kept
+  std::uint64_t bytes = 0;                                    // size of all files
   Findings findings;
 };
 
-/// Surveys a recording from its records, for a caller that reads them for other purposes too.
+/// Surveys a recording from its records, for a caller that also uses the records for other
+/// purposes.
 class RecordingSurveyor {
  public:
-  /// Takes a record. Call for every record of the stream, in order.
+  /// Takes a record. Call this for every record of the stream, in order.
   void take(const McapRecord& record) {
     std::visit([this](const auto& one) { add(one); }, record);
   }
-  /// Call after the last record of the stream. `path`: the file to name in findings.
+  /// Call this after the last record of the stream. `path`: the file that findings name.
   RecordingSurvey finish(const std::string& path, const RecordStream& stream);
-  /// Absent until they were read.
+  /// The facts; empty until they were read.
   const std::optional<RecordingFacts>& facts() const { return survey_.facts; }
 
  private:
@@ -78,18 +79,19 @@ class RecordingSurveyor {
 
   std::map<std::uint16_t, ChannelSurvey> channels_;
   std::vector<ClockPair> clock_;
-  // The last counts of each sender, by topic, stream, address and node, and of each port.
+  // The last counts of each sender and each port. The key of a sender is topic, stream, address and
+  // node.
   std::map<std::array<std::string, 4>, CountedSender> senders_;
   std::map<std::string, CountedPort> ports_;
   KinectSurvey kinects_;
   RecordingSurvey survey_;
 };
 
-/// Reports a recording of kinalign that was closed properly but does not end: the rest, if a disk
-/// stored it, is missing.
+/// A finding about a recording of kinalign that was closed properly, but does not contain the
+/// recording's end. The rest may be in a file that is missing.
 Findings judge_end(const std::string& path, bool is_ours, Ending ending);
 
-/// Returns whether a file begins as an MCAP file. Fails if it cannot be read.
+/// True if a file begins as an MCAP file. Fails if the file cannot be read.
 Result<bool> is_recording(FileSystem& files, const std::string& path);
 
 }  // namespace kinalign

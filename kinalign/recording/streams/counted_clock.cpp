@@ -10,23 +10,25 @@ namespace kinalign {
 
 namespace {
 
-// accepted deviation from the stated step; Noitom's programs state three decimals
+// The largest accepted relative deviation from the stated time between frames. Noitom's programs
+// state this time with three decimals.
 constexpr double believed = 0.01;
-constexpr std::int64_t enough_frames = 100;  // needed to contradict the stated step
-// Both values are choices. There are so many windows that one with a pause does not matter, and
-// each is so long that a delay of a few milliseconds is a thousandth of it.
+constexpr std::int64_t enough_frames = 100;  // needed to contradict the stated time between frames
+// Both values are choices. With so many windows, a pause in one window does not matter. A window is
+// so long that a delay of a few milliseconds is a thousandth of it.
 constexpr int windows = 8;
 constexpr Duration shortest_window = std::chrono::milliseconds(500);
 constexpr Duration longest_window = std::chrono::seconds(5);
-constexpr double slowest_step_ns = 2e9;  // keeps the counter of a 32-bit number from overflowing
+constexpr double slowest_step_ns = 2e9;  // prevents an overflow of the counter for 32-bit numbers
 
-/// For each window of a life, the frame with the shortest delay, if frames are `step` ns apart.
+/// For each window of time, the frame with the shortest delay if frames are `step` ns apart. A new
+/// count of the device (life) begins a new window.
 std::vector<CountedFrame> earliest_of_windows(const std::vector<CountedFrame>& frames,
                                               Duration window, double step) {
   std::vector<CountedFrame> out;
-  // The start of the present window, by the arrival of its first frame.
+  // The arrival of the first frame in the current window.
   HostTime begin;
-  // The delay of a frame beyond that of the window's earliest frame so far, ns.
+  // The delay of a frame minus the delay of the window's best frame so far, ns.
   const auto way = [&](const CountedFrame& frame) {
     return static_cast<double>((frame.arrival - begin).count()) -
            step * static_cast<double>(frame.number - out.back().number);
@@ -42,8 +44,8 @@ std::vector<CountedFrame> earliest_of_windows(const std::vector<CountedFrame>& f
   return out;
 }
 
-/// Steps from each frame to the next of its life, ns per number: quartiles; 0 if no two frames
-/// follow each other.
+/// The time from each frame to the next frame of the same count, ns per number: quartiles. They are
+/// 0 if no two frames follow each other.
 struct Steps {
   double low = 0.0, middle = 0.0, high = 0.0;
   bool agree() const { return high - low <= 2.0 * believed * middle; }
@@ -54,7 +56,7 @@ Steps steps_of(const std::vector<CountedFrame>& frames) {
   steps.reserve(frames.size());
   for (std::size_t i = 1; i < frames.size(); ++i) {
     const CountedFrame &a = frames[i - 1], &b = frames[i];
-    // A frame of an earlier number arrived late; its step would be negative.
+    // A frame with a lower number arrived late. Its time difference would be negative.
     if (a.life != b.life || b.number <= a.number) continue;
     steps.push_back(static_cast<double>((b.arrival - a.arrival).count()) /
                     static_cast<double>(b.number - a.number));
@@ -67,18 +69,18 @@ Steps steps_of(const std::vector<CountedFrame>& frames) {
   return {at(1), at(2), at(3)};
 }
 
-/// The median step of the windows. A pause in which the device does not count falsifies only one or
-/// two windows. If many windows have pauses, the median step of neighbouring frames is used.
+/// The median time per number over all windows. A pause in which the device does not count affects
+/// only one or two windows. If many windows have pauses, the median of neighbouring frames is used.
 double measured_step_ns(const std::vector<CountedFrame>& frames) {
   if (frames.empty()) return 0.0;
   const Duration length = frames.back().arrival - frames.front().arrival;
   const Duration window = std::clamp(length / windows, shortest_window, longest_window);
-  Steps steps;  // the first round uses the first frame of each window
-  // Each round knows the step better, so it finds the earliest frame of each window better.
+  Steps steps;  // 0 at first, so the first round uses the first frame of each window
+  // Each round knows the time per number better, so it finds better frames in the windows.
   for (int round = 0; round < 3; ++round) {
     steps = steps_of(earliest_of_windows(frames, window, steps.middle));
   }
-  // Windows that disagree contain pauses without a count.
+  // If the windows disagree, they contain pauses in which the device does not count.
   return steps.agree() ? steps.middle : steps_of(frames).middle;
 }
 
@@ -94,7 +96,7 @@ void count_clock(std::vector<CountedFrame> frames, double stated_step_ns,
                  const DeviceRequest& request, LearnedDevice& learned) {
   if (request.options.rate_hz > 0.0) stated_step_ns = 1e9 / request.options.rate_hz;
   const double measured = measured_step_ns(frames);
-  // The stated rate is preferred. Only many frames at another rate can contradict it.
+  // The stated rate is preferred. Only many frames at another rate contradict it.
   learned.step_ns = stated_step_ns > 0.0 ? stated_step_ns : measured;
   const bool many = static_cast<std::int64_t>(frames.size()) > enough_frames;
   if (stated_step_ns > 0.0 && many && std::abs(measured / stated_step_ns - 1.0) > believed) {
@@ -105,14 +107,14 @@ void count_clock(std::vector<CountedFrame> frames, double stated_step_ns,
                "frames that arrive at " + rate_text(measured)},
          "stamps were counted by the rate at which they arrive", "set rate_hz to the true rate"});
   }
-  // Each frame is an exchange without an echo: its arrival is late by an unknown delay, and the
-  // clock keeps the earliest ones.
+  // A frame gives an exchange without an echo. Its arrival is late by an unknown delay, so the
+  // clock model uses the earliest arrivals.
   std::vector<Exchange> exchanges;
   exchanges.reserve(frames.size());
   for (const CountedFrame& frame : frames) {
     exchanges.push_back({frame.life, counter_of(frame, learned.step_ns), frame.arrival, {}});
   }
-  frames = {};  // frees memory: an hour at 125 Hz is 11 MB
+  frames = {};  // frees memory: the frames of an hour at 125 Hz take 11 MB
   learned.clock = device_clock(exchanges, learned.utc_minus_host);
 }
 

@@ -8,7 +8,7 @@ namespace kinalign {
 
 namespace {
 
-/// The functions that make rows of a protocol's poses, points or inertial samples.
+/// The functions that make rows from a protocol's poses, points or inertial samples.
 DeviceProtocol functions_of(Protocol protocol) {
   switch (protocol) {
     case Protocol::nodes:
@@ -19,21 +19,21 @@ DeviceProtocol functions_of(Protocol protocol) {
       return xsens_protocol();
     case Protocol::kinect:
       return kinect_protocol();
-    // The switch leaves at this case, so that every path returns a value.
+    // This case ends the switch, so that every path of the function returns a value.
     case Protocol::slimevr:
       break;
   }
   return slimevr_protocol();
 }
 
-/// The value of a key in `select`, or `otherwise` if the user gave none.
+/// The value of a key in `select`; `otherwise` if the user did not give the key.
 std::string selected(const StreamOptions& options, const char* key, const std::string& otherwise) {
   const auto found = options.select.find(key);
   return found == options.select.end() ? otherwise : found->second;
 }
 
-/// Splits a tracker's node into address and sensor: "10.0.0.21/1" into "10.0.0.21" and "1". Other
-/// nodes are returned unchanged with an empty sensor.
+/// Splits a tracker's name into address and sensor: "10.0.0.21/1" gives "10.0.0.21" and "1". Other
+/// names are returned unchanged with an empty sensor.
 std::pair<std::string, std::string> tracker_of(const std::string& node) {
   const auto slash = node.rfind('/');
   const bool has_sensor = slash != std::string::npos && slash + 1 < node.size() &&
@@ -46,13 +46,13 @@ std::pair<std::string, std::string> tracker_of(const std::string& node) {
 
 std::optional<DeviceProtocol> rows_of(std::optional<Protocol> protocol, bool trackers) {
   if (!protocol) return std::nullopt;
-  // Trackers are another content of the same stream; only some protocols have them.
+  // Some protocols also transport the samples of inertial trackers in the same stream.
   if (!trackers) return functions_of(*protocol);
   return row_of(*protocol).has_trackers ? std::optional(xsens_tracker_protocol()) : std::nullopt;
 }
 
 Result<DeviceRequest> request_of(const StreamOptions& options, const StreamFile& file) {
-  // An unknown key would select nothing without notice.
+  // An unknown key would be ignored without notice, so it is refused.
   for (const auto& [name, value] : options.select) {
     if (name == "stream" || name == "node" || name == "sender" || name == "body") continue;
     if (name == "kind" && (value == "poses" || value == "trackers")) continue;
@@ -64,7 +64,7 @@ Result<DeviceRequest> request_of(const StreamOptions& options, const StreamFile&
   request.trackers = selected(options, "kind", "poses") == "trackers";
   request.choice = {selected(options, "stream", options.name), selected(options, "node", file.node),
                     selected(options, "sender", "")};
-  // A tracker is known by its address, which then selects the sender as well.
+  // A tracker's name begins with its address, so the address also selects the sender.
   const auto [tracker, sensor] = tracker_of(request.choice.node);
   if (request.choice.sender.empty()) request.choice.sender = tracker;
   const std::string body = selected(options, "body", sensor);

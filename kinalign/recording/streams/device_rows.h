@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts the messages of a recorded device to rows. A first pass learns the device's clock, and
-// later passes use it to stamp the rows.
+// Converts the messages of a recorded device to rows. A first pass over the messages learns the
+// device's clock. Later passes stamp the rows with this clock.
 #pragma once
 
 #include "kinalign/clock/offline/device_clock.h"
@@ -23,50 +23,51 @@
 
 namespace kinalign {
 
-/// Selects one device of a recording. Fields that the user left open are filled in when the
-/// recording is known (SenderTable::complete, choose in recording_source.cpp).
+/// Selects one device of a recording. When the recording is known, SenderTable::complete() and
+/// choose() (recording_source.cpp) fill in the fields that the user left open.
 struct DeviceChoice {
   std::string stream;
-  std::string node;  // inertial nodes: an id, or a place if the lab named it; empty: the only node
-  std::string sender;  // address, with or without port; empty: the sender with the most messages
-  std::set<std::string> left_out{};  // senders at that address that are not read
+  std::string node;    // for inertial nodes: an id, or a place in lab.toml; empty: the only node
+  std::string sender;  // address with or without port; empty: the busiest sender
+  std::set<std::string> left_out{};  // senders at this address that are not read
 
   bool operator==(const DeviceChoice&) const = default;
 };
 
-/// The rows to make: of which device, and with which options.
+/// Describes the rows to make: the device and the options.
 struct DeviceRequest {
   StreamOptions options;
   StreamFile file;
   DeviceChoice choice;
-  std::string skeleton{};  // header of the BVH that the options name, if any
-  /// Body of a Kinect, avatar or character of mocap, or sensor of a SlimeVR tracker.
+  std::string skeleton{};  // the head of the BVH file in the options, if any
+  /// The body of a Kinect, the avatar or character of mocap, or the sensor of a SlimeVR tracker.
   std::optional<std::uint64_t> body{};
-  bool trackers = false;  // Xsens only: inertial samples instead of poses
+  bool trackers = false;  // for Xsens: inertial samples instead of poses
 };
 
-/// Reads the selection of a manifest's stream: select["stream"], by default the options' name;
-/// select["node"], by default the file's node; select["sender"], select["body"], select["kind"]. A
-/// tracker's node is its address; "/1" after it selects its sensor 1. Fails if a key is unknown or
-/// a body is not a number.
+/// Reads the selection of a stream in a manifest. select["stream"] is the recorded stream; its
+/// default is the stream's own name. select["node"] has the file's node as default.
+/// select["sender"], select["body"] and select["kind"] may select further. A tracker's node is its
+/// address; "/1" after the address selects sensor 1. Fails if a key is unknown or a body is not a
+/// number.
 Result<DeviceRequest> request_of(const StreamOptions& options, const StreamFile& file);
 
 /// The result of the first pass over a device's messages. It is complete before the first row is
-/// made, and all passes over the rows share it.
+/// made, and all later passes use it.
 struct LearnedDevice {
   RawChannel channel;
-  std::string skeleton;  // header of a BVH; empty: the recording has none
+  std::string skeleton;  // the head of a BVH file; empty: the recording has none
   Duration utc_minus_host{};
   DeviceClock clock;
-  double step_ns = 0.0;     // ns between frames that are counted, or that share a datagram
-  bool by_arrival = false;  // the device sends no time and no number; stamps are UTC of arrival
-  ImuContent content;       // nodes only
-  HostEpochs epochs;        // Kinects only
+  double step_ns = 0.0;     // time between counted frames, or between frames in one datagram, ns
+  bool by_arrival = false;  // the data have no time or number; stamps are arrivals in UTC
+  ImuContent content;       // for inertial nodes only
+  HostEpochs epochs;        // for Kinects only
   Findings findings;
 };
 
-/// The error for a device without rows. `what`: the content that rows need. `others`: messages of
-/// the right protocol with other content.
+/// The error for a device without rows. `what`: the content that rows need. `others`: the number of
+/// messages of this protocol with other content.
 inline Error no_rows_error(std::string_view what, const std::string& file,
                            const LearnedDevice& learned, std::uint64_t others = 0) {
   const std::string expected = std::string(what) + " in stream " + shown(learned.channel.stream);
@@ -81,7 +82,7 @@ inline Error no_rows_error(std::string_view what, const std::string& file,
           "none", ErrorKind::no_rows_in_recording};
 }
 
-/// Marks a device whose packets have neither a time nor a number that could replace it.
+/// For a device whose packets contain no time, and no number that could replace a time.
 inline void stamp_by_arrival(const std::string& file, LearnedDevice& learned) {
   learned.by_arrival = true;
   learned.findings.push_back(
@@ -90,42 +91,43 @@ inline void stamp_by_arrival(const std::string& file, LearnedDevice& learned) {
        "if the delay is known, set a negative offset_ms"});
 }
 
-/// The first pass: learns from a device's messages how to stamp its rows. It keeps only what the
-/// clock and the stamps need, because recordings last for hours.
+/// The first pass over a device's messages: learns how to stamp the rows. It only keeps what the
+/// clock and the stamps need, because recordings may last for hours.
 class DeviceListener {
  public:
   using TakeStamp = std::function<void(Time)>;
 
   virtual ~DeviceListener() = default;
   virtual void take(const RecordedMessage& message) = 0;
-  /// Call once, after the last message. `learned` contains channel, skeleton and utc_minus_host.
-  /// Fails if no rows can be made.
+  /// Call this once after the last message. `learned` already contains channel, skeleton and
+  /// utc_minus_host. Fails if no rows can be made.
   virtual Result<void> finish(const DeviceRequest& request, LearnedDevice& learned) = 0;
-  /// Call after finish(). Gives the stamp of each row that DeviceRows makes, in their order.
+  /// Call this after finish(). Calls `take` with the stamp of each row that DeviceRows makes, in
+  /// the same order.
   virtual void stamp_rows(const LearnedDevice& learned, const TakeStamp& take) const = 0;
 };
 
-/// A later pass: makes rows from the same messages. It must not be used again after a failure. Rows
-/// and stamps of DeviceListener::stamp_rows must agree one by one: the take's number of rows is
-/// planned by the stamps.
+/// A later pass over the same messages: makes the rows. After a failure the object must not be used
+/// again. There must be exactly one row for each stamp of DeviceListener::stamp_rows(), because the
+/// take's number of rows follows from these stamps.
 template <class Frames>
 class DeviceRows {
  public:
   using Header = std::conditional_t<
       std::is_same_v<Frames, ClipFrames>, Skeleton,
       std::conditional_t<std::is_same_v<Frames, PointFrames>, PointHeader, ImuHeader>>;
-  /// `file`: its name, used in messages.
+  /// `file`: the name of the file, for messages.
   explicit DeviceRows(std::string file) : file_(std::move(file)) {}
   virtual ~DeviceRows() = default;
   virtual Result<void> take(const RecordedMessage& message, Frames& out) = 0;
   virtual Result<void> finish(Frames& out) = 0;
-  /// nullptr until the first row, if the header depends on it.
+  /// The header; nullptr before the first row if the header depends on that row.
   virtual const Header* header() const = 0;
   Findings findings;  // complete after finish()
 
  protected:
   const std::string& file() const { return file_; }
-  /// Adds a note, unless the count is 0.
+  /// Adds a note, unless `count` is 0.
   void note(std::uint64_t count, std::string_view expected, std::string_view found,
             std::string_view meaning) {
     if (count == 0) return;
@@ -134,7 +136,7 @@ class DeviceRows {
          Error{file_, 0, std::string(expected), std::to_string(count) + " " + std::string(found)},
          std::string(meaning), ""});
   }
-  /// Adds a warning, unless no row came too late. `rows`: a word for the rows.
+  /// Adds a warning if rows came too late. `rows`: a word for the rows.
   template <class Row>
   void warn_too_late(const RowsInOrder<Row>& order, std::string_view rows) {
     if (order.too_late() == 0) return;
@@ -156,12 +158,12 @@ using AnyDeviceRows =
     std::variant<std::unique_ptr<DeviceRows<ClipFrames>>, std::unique_ptr<DeviceRows<PointFrames>>,
                  std::unique_ptr<DeviceRows<ImuSamples>>>;
 
-/// The functions for a protocol of which rows can be made.
+/// The functions that make rows of one protocol.
 struct DeviceProtocol {
   std::unique_ptr<DeviceListener> (*listen)(std::optional<std::uint64_t> body);
   AnyDeviceRows (*rows)(const DeviceRequest& request, std::shared_ptr<const LearnedDevice> learned);
 };
-/// `body`: selects one of several, see DeviceRequest.
+/// The functions of a Listener and a Rows class. `body` in them: see DeviceRequest.
 template <class Listener, class Rows>
 DeviceProtocol device_protocol() {
   return {[](std::optional<std::uint64_t> body) -> std::unique_ptr<DeviceListener> {
@@ -171,14 +173,15 @@ DeviceProtocol device_protocol() {
               -> AnyDeviceRows { return std::make_unique<Rows>(request, std::move(learned)); }};
 }
 
-/// Absent if the protocol is not known, or if it has no trackers but they are wanted.
+/// The result is empty if the protocol is not known, or if trackers are wanted but the protocol has
+/// none.
 std::optional<DeviceProtocol> rows_of(std::optional<Protocol> protocol, bool trackers);
 
 DeviceProtocol node_protocol();           // node_rows.cpp: kinalign's inertial nodes
 DeviceProtocol kinect_protocol();         // kinect_rows.cpp
 DeviceProtocol noitom_protocol();         // noitom_rows.cpp
 DeviceProtocol xsens_protocol();          // xsens_rows.cpp: poses
-DeviceProtocol xsens_tracker_protocol();  // inertial samples of the same stream
+DeviceProtocol xsens_tracker_protocol();  // xsens_rows.cpp: inertial samples
 DeviceProtocol slimevr_protocol();        // slimevr_rows.cpp
 
 }  // namespace kinalign

@@ -24,17 +24,18 @@ void HostEpochs::add(const RecordedExchange& recorded) {
   epochs.back().last = recorded.exchange;
 }
 
-// A message between two epochs could belong to either. The device's clock does not change, so the
-// epoch with the nearer clock offset is chosen.
+// The key of the clock model for a message. If the message arrived between two epochs, it could
+// belong to either of them. The device's clock does not jump, so the epoch with the more similar
+// clock offset is chosen.
 BootKey HostEpochs::boot_at(BootKey boot, NodeTime sent, HostTime arrival) const {
-  // A boot without exchanges has one model, whatever the epoch.
+  // A boot without exchanges has a single clock model.
   const auto found = boots_.find(boot);
   if (found == boots_.end()) return boot;
   const std::vector<Epoch>& epochs = found->second;
   const auto next = std::find_if(epochs.begin(), epochs.end(), [arrival](const Epoch& epoch) {
     return arrival <= epoch.last.h_rx;
   });
-  // After the last exchange the newest epoch goes on.
+  // The newest epoch continues after its last exchange.
   if (next == epochs.end()) return boot_in_epoch(boot, epochs.back().number);
   if (next == epochs.begin() || arrival >= next->first.h_rx) {
     return boot_in_epoch(boot, next->number);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A suspension of the host starts a new epoch of its time axis. A device that did not sleep then
-// needs a new clock model. Exchanges contain their epoch; other messages of a device do not.
+// If the host is suspended, its clock jumps and a new epoch begins. A device that was not suspended
+// then needs a new clock model. Exchanges contain the number of their epoch, but other messages do
+// not.
 #pragma once
 
 #include "kinalign/recording/format.h"
@@ -11,15 +12,15 @@
 
 namespace kinalign {
 
-/// The epochs in which a device's exchanges were made, for each boot of the device. Epochs of a
-/// boot are in the order of arrival; each one keeps its first and its last exchange only.
+/// The epochs of a device's exchanges, for each boot of the device. The epochs of a boot are in the
+/// order of arrival. Only the first and the last exchange of an epoch are kept.
 class HostEpochs {
  public:
-  /// Call in the order of arrival.
+  /// Call this in the order of arrival.
   void add(const RecordedExchange& exchange);
-  /// The key of the clock model for a message that a device sent at `sent` of its clock. Between
-  /// the last exchange of an epoch and the first of the next one, the epoch with the nearer clock
-  /// offset is chosen.
+  /// The key of the clock model for a message that arrived at `arrival`. `sent`: the device's clock
+  /// at sending. Between the last exchange of an epoch and the first exchange of the next one, the
+  /// epoch with the more similar clock offset is chosen.
   BootKey boot_at(BootKey boot, NodeTime sent, HostTime arrival) const;
 
  private:

@@ -9,14 +9,14 @@ namespace kinalign {
 
 namespace {
 
-// A limit on memory: a damaged recording may have a new id in every frame.
+// This limits the memory, because a damaged recording may have a new id in every frame.
 constexpr std::size_t most_ids = 1000;
-// Both values are choices. A person moves less than near_m while the SDK assigns another id, and
-// does not walk faster than walk_m_per_s in a lab.
+// Both values are choices. A person moves by less than near_m while the SDK assigns a new id. In a
+// lab, nobody walks faster than walk_m_per_s.
 constexpr double near_m = 1.0, walk_m_per_s = 1.0;
 constexpr double tick_s = 1e-7;
 
-/// The mean position of the tracked joints. Absent if there is none.
+/// The mean position of the tracked joints; empty if no joint is tracked.
 std::optional<Vec3> place_of(const KinectBody& body) {
   Vec3 sum = Vec3::Zero();
   int count = 0;
@@ -34,7 +34,7 @@ std::optional<Vec3> place_of(const KinectBody& body) {
 
 std::optional<std::uint64_t> KinectPerson::operator()(const KinectFrame& frame) {
   several_ += frame.bodies.size() > 1 ? 1 : 0;
-  // Ids are counted even if one is selected, so that the report can say which ids there were.
+  // All ids are kept even if the user selected one, because the report lists them.
   for (const KinectBody& body : frame.bodies) {
     if (ids_.size() < most_ids) ids_.insert(body.id);
   }
@@ -54,7 +54,7 @@ std::optional<std::uint64_t> KinectPerson::operator()(const KinectFrame& frame) 
   return body->id;
 }
 
-/// The body with the followed id, or else the nearest body that may be the person.
+/// The body with the followed id. Without this id: the nearest body that may be the person.
 const KinectBody* KinectPerson::body_in(const KinectFrame& frame) const {
   const KinectBody* nearest = nullptr;
   double least = 0.0;
@@ -70,10 +70,10 @@ const KinectBody* KinectPerson::body_in(const KinectFrame& frame) const {
   return nearest;
 }
 
-// The longer the person was lost, the further away it may be found.
+// The longer the person was not seen, the further away the person may be.
 bool KinectPerson::may_be(const KinectBody& body, const Vec3& place, std::int64_t ticks) const {
-  // Before the person was seen, every body may be the person, and the nearest to the sensor is
-  // taken.
+  // Before the person is seen for the first time, any body may be the person. The caller takes the
+  // body nearest to the sensor.
   if (!seen_) return true;
   const double lost_s = tick_s * static_cast<double>(std::max<std::int64_t>(0, ticks - *seen_));
   return !others_.contains(body.id) && (place - place_).norm() < near_m + walk_m_per_s * lost_s;
@@ -83,12 +83,12 @@ void KinectPerson::follow(const KinectFrame& frame, const KinectBody& body) {
   followed_ += body.id != last_ ? 1 : 0;
   last_ = body.id;
   seen_ = frame.device_ticks;
-  // A body without tracked joints keeps the last place.
+  // If the body has no tracked joints, the last position is kept.
   place_ = place_of(body).value_or(place_);
   for (const KinectBody& other : frame.bodies) {
     if (other.id == last_ || others_.size() >= most_ids) continue;
-    // The SDK sometimes sees one person as two bodies at the same place. Such a body is not another
-    // person.
+    // The SDK sometimes reports one person as two bodies at the same place. Such a body does not
+    // count as another person.
     const auto place = place_of(other);
     if (place && (*place - place_).norm() > near_m / 2.0) others_.insert(other.id);
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of a Kinect. The sensor's ticks are converted to UTC in two steps, because the sensor's
-// clock cannot be pinged. The sender received each frame at `taken` of its own clock, and pings
-// relate the sender's clock to the host's. Stamps are late by the shortest delay from the sensor to
-// the sender.
+// Makes the rows of a Kinect. The sensor's ticks are converted to UTC in two steps, because the
+// sensor itself can't answer pings. The sender's clock gives the time at which the sender received
+// each frame. Pings relate the sender's clock to the host's clock. All stamps are late by the
+// shortest delay from the sensor to the sender.
 #include "kinalign/protocols/kinect/frames.h"
 #include "kinalign/recording/frames/kinect_frames.h"
 #include "kinalign/recording/streams/device_rows.h"
@@ -20,32 +20,32 @@ namespace kinalign {
 
 namespace {
 
-/// The times of a frame: taken by the sensor (`device`), received by the sender (`sender`), sent,
-/// and arrived.
+/// The times of a frame on each clock: the sensor's (`device`), the sender's at receiving
+/// (`sender`) and at sending (`sent`), and the host's (`arrival`).
 struct Taken {
-  BootKey boot = 0;  // the session, until the host's epochs are known
+  BootKey boot = 0;  // the session; later the key of its clock model
   NodeTime device{}, sender{}, sent{};
-  HostTime arrival{};  // of the message that contained the part, or completed the frame
+  HostTime arrival{};  // arrival of the message that contained the part or completed the frame
 };
 Taken taken_of(const KinectFrame& frame, HostTime arrival) {
   return {frame.origin.session, kinect_sender_time(frame.device_ticks),
           kinect_sender_time(frame.taken_ticks), kinect_sender_time(frame.sent_ticks), arrival};
 }
 
-/// The order in which exchanges reached the host. device_clock() needs it.
+/// True if `a` arrived at the host before `b`. device_clock() needs this order.
 bool came_before(const Exchange& a, const Exchange& b) { return a.h_rx < b.h_rx; }
 
-/// The stamp of a frame. Absent if its clock is not known.
+/// The stamp of a frame; empty if its clock is not known.
 std::optional<Time> stamp_of_frame(const LearnedDevice& learned, const Taken& one) {
   const BootKey boot = learned.epochs.boot_at(one.boot, one.sent, one.arrival);
   return stamp_of(learned.clock, boot, one.device, one.arrival);
 }
 
 constexpr std::size_t most_overtaking_kinect_frames =
-    16;  // half a second: no network delays one for longer
+    16;  // half a second; no network delays a frame for longer
 
-/// Learns both clocks of a Kinect and keeps the times of its frames. Each frame also serves as a
-/// one-way exchange of the sender's clock.
+/// Learns both clocks of a Kinect and keeps the times of its frames. Each frame is also a one-way
+/// exchange for the sender's clock.
 class KinectListener final : public DeviceListener {
  public:
   explicit KinectListener(std::optional<std::uint64_t>) {}
@@ -56,7 +56,8 @@ class KinectListener final : public DeviceListener {
       if (const auto recorded = to_exchange(message.payload)) {
         epochs_.add(*recorded);
         exchanges_.push_back(recorded->exchange);
-        // The epoch is part of the key, since the host's axis jumps between epochs.
+        // The number of the epoch is part of the key, because the host's clock jumps between
+        // epochs.
         exchanges_.back().boot = boot_in_epoch(recorded->exchange.boot, recorded->epoch);
       }
       return;
@@ -77,32 +78,33 @@ class KinectListener final : public DeviceListener {
     joined_.clear();
     frames_.finish(joined_);
     add_joined();
-    // Only now are all epochs known, so frames get theirs here.
+    // All epochs are known now, so each frame gets its own.
     for (Taken& one : taken_) {
       one.boot = epochs_.boot_at(one.boot, one.sent, one.arrival);
       exchanges_.push_back({one.boot, one.sent, one.arrival, std::nullopt});
     }
     std::stable_sort(exchanges_.begin(), exchanges_.end(), came_before);
-    // The first clock is left on the host's axis; the second one takes its times as arrivals.
+    // The sender's clock is converted to the host's clock only. The second fit uses these host
+    // times as arrivals of the sensor's frames.
     const DeviceClock sender = device_clock(exchanges_, {});
     std::vector<Exchange> from_sensor;
     from_sensor.reserve(taken_.size());
     for (const Taken& one : taken_) {
       const auto at = host_from_node(sender.model, one.boot, one.sender, one.arrival);
-      // A part whose session has no clock gives no time.
+      // A part is skipped if its session has no clock.
       if (at) from_sensor.push_back({one.boot, one.device, at->time, std::nullopt});
     }
     std::stable_sort(from_sensor.begin(), from_sensor.end(), came_before);
     learned.clock = device_clock(from_sensor, learned.utc_minus_host);
     learned.epochs = std::move(epochs_);
-    // The times of all parts take much memory and are not needed for stamps.
+    // The times of all parts take much memory and are not needed any more.
     taken_ = {};
     exchanges_ = {};
     return {};
   }
 
   void stamp_rows(const LearnedDevice& learned, const TakeStamp& take) const override {
-    // A frame without a stamp makes no row, here and in KinectRows.
+    // A frame without a stamp gives no row. KinectRows does the same.
     RowsInOrder<std::monostate> stamps(most_overtaking_kinect_frames);
     const auto release = [&take](Time stamp, std::monostate) { take(stamp); };
     for (const Taken& one : rows_) stamps.add(stamp_of_frame(learned, one), {}, release);
@@ -115,17 +117,17 @@ class KinectListener final : public DeviceListener {
   }
 
   HostTime arrival_{};
-  std::vector<Taken> rows_;  // of complete frames; their stamps are computed when clocks are known
+  std::vector<Taken> rows_;  // times of complete frames, stamped when the clocks are known
   KinectFrames frames_;
   std::vector<KinectFrame> parts_;
   std::vector<JoinedKinectFrame> joined_;
-  std::vector<Exchange> exchanges_;  // from pings, and later also from frames
+  std::vector<Exchange> exchanges_;  // from pings; finish() adds those from frames
   HostEpochs epochs_;
   std::vector<Taken> taken_;
 };
 
-/// Makes one row for each complete frame, in the order of stamps, with the joints of the followed
-/// person. A frame without the person gives a row without joints.
+/// Makes one row for each complete frame, in the order of stamps. A row contains the joints of the
+/// followed person. If the person is not in the frame, the row has no joints.
 class KinectRows final : public DeviceRows<PointFrames> {
  public:
   KinectRows(const DeviceRequest& request, std::shared_ptr<const LearnedDevice> learned)
@@ -142,7 +144,7 @@ class KinectRows final : public DeviceRows<PointFrames> {
     return {};
   }
 
-  /// Makes the remaining rows and reports what was left out.
+  /// Makes the remaining rows and adds findings about frames that were left out.
   Result<void> finish(PointFrames& out) override {
     joined_.clear();
     frames_.finish(joined_);
@@ -183,7 +185,8 @@ class KinectRows final : public DeviceRows<PointFrames> {
       waiting_.add(stamp, std::move(one.frame), appending(out));
     }
   }
-  // Rows are made when they leave the queue, so the person is followed in the order of time.
+  // Rows are made when frames leave the queue. The person is therefore followed in the order of
+  // time.
   std::function<void(Time, const KinectFrame&)> appending(PointFrames& out) {
     return [&](Time stamp, const KinectFrame& frame) {
       not_finite_ += append_kinect_row(frame, person_(frame).value_or(0), out);

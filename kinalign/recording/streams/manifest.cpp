@@ -13,8 +13,8 @@ namespace kinalign {
 
 namespace {
 
-/// Order of streams in a manifest. Mocap comes first, because it is the most accurate and has the
-/// highest rate: its stamps become the grid.
+/// The order of streams in a manifest. Mocap comes first, because it is most accurate and has the
+/// highest rate. The stamps of the first stream become the times of the take.
 constexpr int kinect_rank = 1;
 constexpr int last_rank = 2;
 int rank_of(std::optional<Protocol> protocol) {
@@ -35,14 +35,14 @@ bool is_named_by_address(const RawChannel& raw) {
   return protocol && row_of(*protocol).is_named_by_address;
 }
 
-/// The data by which devices of one stream are distinguished.
+/// The data that distinguish the devices of one stream.
 struct Nodes {
-  // sensors of SlimeVR trackers with rotations, one bit each, by address
+  // The sensors of SlimeVR trackers that sent rotations, one bit each; the key is the address.
   std::map<std::string, std::uint32_t> sensors;
-  std::map<std::string, std::set<std::string>> called;  // ids of nodes, by stream and name
+  std::map<std::string, std::set<std::string>> called;  // ids of nodes; the key is from called()
 };
-/// The key of Nodes::called. A name is an id or a place. Both share one map, because a place may
-/// equal another node's id.
+/// The key of Nodes::called. `name` is an id or a place on the body. Both share one map, because a
+/// place may equal another node's id.
 std::string called(const RawChannel& raw, const std::string& name) {
   return raw.stream + "/" + name;
 }
@@ -53,7 +53,7 @@ Nodes nodes_in(const RecordingSurvey& survey) {
   for (const ChannelSurvey& one : survey.channels) {
     const auto raw = to_raw(one.channel);
     if (!raw) continue;
-    // A tracker's sensors may come over several channels of one address.
+    // Several channels with the same address may contain a tracker's sensors.
     nodes.sensors[host_of(raw->sender)] |= one.sensors;
     for (const std::string& name : {raw->node, raw->place}) {
       if (!name.empty()) nodes.called[called(*raw, name)].insert(raw->node);
@@ -62,9 +62,9 @@ Nodes nodes_in(const RecordingSurvey& survey) {
   return nodes;
 }
 
-/// The names by which a manifest lists the devices of one stream. Trackers are named by address,
-/// followed by the sensor's number if there are several. A node is named by its place if no other
-/// node has that place. For mocap and Kinects the name is empty, because the first pass finds the
+/// The names of one stream's devices in a manifest. A tracker's name is its address, followed by
+/// the sensor's number if the tracker has several sensors. A node's name is its place if no other
+/// node has the same place. Mocap and Kinects have empty names, because the first pass finds the
 /// device.
 std::vector<std::string> node_names(const RawChannel& raw, const Nodes& nodes) {
   if (!is_named_by_address(raw)) {
@@ -74,7 +74,7 @@ std::vector<std::string> node_names(const RawChannel& raw, const Nodes& nodes) {
   }
   const std::string host = host_of(raw.sender);
   const std::uint32_t sensors = nodes.sensors.at(host);
-  // One sensor needs no number after the address.
+  // If there is only one sensor, the address needs no number.
   if (std::popcount(sensors) < 2) return {host};
   std::vector<std::string> names;
   for (unsigned k = 0; k < 32; ++k) {
@@ -83,7 +83,7 @@ std::vector<std::string> node_names(const RawChannel& raw, const Nodes& nodes) {
   return names;
 }
 
-/// Adds each name once: a node may have had several addresses.
+/// Adds each name once, because a node may have had several addresses.
 void add_nodes(const std::string& path, const std::vector<std::string>& names,
                std::vector<StreamFile>& files) {
   for (const std::string& name : names) {
@@ -108,13 +108,13 @@ Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& p
   for (const ChannelSurvey& one : survey.channels) {
     const auto raw = to_raw(one.channel);
     if (!raw || raw->protocol == exchange_encoding || one.messages == 0) continue;
-    // A port of trackers also receives packets without rotations, such as those of other programs.
-    // If some tracker rotates, addresses without rotations are none.
+    // A port for trackers may also receive packets of other programs, which contain no rotations.
+    // If any tracker sent rotations, addresses without rotations are not trackers.
     if (is_named_by_address(*raw) && one.sensors == 0 && some_rotate) continue;
     auto device = std::find_if(devices.begin(), devices.end(),
                                [&](const Device& d) { return d.options.name == raw->stream; });
     if (device == devices.end()) {
-      // The device is inserted at the end, in the order of channels; ranks are applied below.
+      // New devices are added at the end, in the order of channels. They are sorted by rank below.
       device = devices.insert(device, {rank_of(protocol_of(*raw)), {}});
       device->options.name = raw->stream;
       device->options.select = {{"stream", raw->stream}};
@@ -131,8 +131,8 @@ Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& p
   manifest.subject = survey.facts->subject;
   manifest.action = survey.facts->action;
   for (Device& device : devices) {
-    // A Kinect has its own space. If there is a stream before it with joints, it is fitted to that
-    // stream.
+    // A Kinect has its own space. If an earlier stream has joints, the Kinect is fitted to the
+    // space of that stream.
     const bool follows = !manifest.streams.empty() && devices.front().rank <= kinect_rank;
     if (follows && device.rank == kinect_rank) manifest.spaces[device.options.name].method = "fit";
     manifest.streams.push_back(std::move(device.options));

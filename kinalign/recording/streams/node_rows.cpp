@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of kinalign's inertial nodes. The counter reading of each sample is converted to UTC with
-// the exchanges that the recorder made from frames and replies. For a node without a counter, the
-// request's number serves as the counter.
+// Makes the rows of kinalign's inertial nodes. The exchanges that the recorder stored convert the
+// counter at each sample to UTC. If a node has no counter, the numbers of its requests serve as the
+// counter.
 #include "kinalign/formats/imu_converter.h"
 #include "kinalign/recording/frames/accepted_frames.h"
 #include "kinalign/recording/streams/device_rows.h"
@@ -20,8 +20,9 @@ namespace kinalign {
 
 namespace {
 
-/// If requests are sent by a steady timer, their number serves as a counter. The earliest arrivals
-/// determine the clock, minus the shortest one-way delay (clock/offline/clockless.h).
+/// Learns the clock of a node without a counter. Its requests are sent by a steady timer, so their
+/// numbers serve as a counter. The earliest arrivals minus the shortest one-way delay determine the
+/// clock (clock/offline/clockless.h).
 void clockless_clock(const std::vector<ClocklessExchange>& exchanges, const DeviceRequest& request,
                      LearnedDevice& learned) {
   const auto least = least_one_way_delay(exchanges);
@@ -38,10 +39,10 @@ void clockless_clock(const std::vector<ClocklessExchange>& exchanges, const Devi
        "its stamps are late by the delay of its fastest request", ""});
 }
 
-/// The stamp of a sample. Absent if its clock is not known.
+/// The stamp of a sample; empty if its clock is not known.
 std::optional<Time> stamp_of_sample(const LearnedDevice& learned, const AcceptedFrame& frame,
                                     std::uint32_t age_us, HostTime arrival) {
-  // this node has no counter, so its requests are counted
+  // True if the node has no counter and its requests are counted.
   const bool counted = learned.step_ns > 0.0;
   if (counted == frame.n_tx.has_value()) return std::nullopt;
   const NodeTime sent =
@@ -50,15 +51,16 @@ std::optional<Time> stamp_of_sample(const LearnedDevice& learned, const Accepted
 }
 
 constexpr std::size_t most_overtaking_samples =
-    64;  // samples of some frames: a radio reorders them
+    64;  // the samples of a few frames, which a radio may reorder
 
-/// Learns the clock of one node and keeps what its samples' stamps need: per frame a few bytes, per
-/// sample its age.
+/// Learns the clock of one node and keeps the data for its samples' stamps. These are a few bytes
+/// per frame and the age of each sample.
 class NodeListener final : public DeviceListener {
  public:
   explicit NodeListener(std::optional<std::uint64_t>) {}
 
-  /// Keeps the exchanges, and the index of its exchange and the ages of its samples for each frame.
+  /// Keeps the exchanges. For each frame, keeps the index of its exchange and the ages of its
+  /// samples.
   void take(const RecordedMessage& message) override {
     if (message.is_exchange()) {
       const AnyExchange any = frames_.take_exchange(message);
@@ -70,7 +72,7 @@ class NodeListener final : public DeviceListener {
     if (!frame) return;
     const bool has_counter = frame->n_tx.has_value();
     const std::size_t exchanges = has_counter ? exchanges_.size() : clockless_.size();
-    // The frame's exchange is the last one that was stored, since it stands directly before the
+    // The frame's exchange is the last stored exchange, because it stands directly before the
     // frame.
     frames_kept_.push_back({message.arrival, static_cast<std::uint32_t>(exchanges - 1),
                             static_cast<std::uint8_t>(frame->sample_count), has_counter});
@@ -80,21 +82,21 @@ class NodeListener final : public DeviceListener {
       content_.orientation |= sample.has_orientation;
       content_.acceleration |= sample.has_acceleration;
       content_.angular_velocity |= sample.has_angular_velocity;
-      // A stream has one kind of acceleration. If one sample lacks gravity, the stream is without
-      // it, and the others become invalid.
+      // A stream has one kind of acceleration. If one sample's acceleration excludes gravity, so
+      // does the stream's, and samples that include gravity become invalid.
       if (sample.has_acceleration) content_.gravity &= sample.gravity_included;
     }
   }
 
-  /// Fits the clock: to the exchanges or, for a node without a counter, to the request numbers.
+  /// Fits the clock to the exchanges or, for a node without a counter, to the numbers of requests.
   Result<void> finish(const DeviceRequest& request, LearnedDevice& learned) override {
     if (exchanges_.empty() && clockless_.empty()) {
       return Failure(Error{request.file.path, 0, "frames of node " + learned.channel.node,
                            "none that the recorder accepted"});
     }
     learned.content = content_;
-    // If the node has sent counters, its requests without one have no clock and are left out
-    // (stamp_of_sample).
+    // If the node has sent counters, its requests without a counter can't be stamped.
+    // stamp_of_sample() leaves them out.
     if (exchanges_.empty()) {
       clockless_clock({clockless_.begin(), clockless_.end()}, request, learned);
     } else {
@@ -104,11 +106,11 @@ class NodeListener final : public DeviceListener {
     return {};
   }
 
-  /// Stamps the samples in the order in which NodeRows makes its rows.
+  /// Passes on the stamps of the samples, in the order in which NodeRows makes its rows.
   void stamp_rows(const LearnedDevice& learned, const TakeStamp& take) const override {
     RowsInOrder<std::monostate> stamps(most_overtaking_samples);
     const auto release = [&take](Time stamp, std::monostate) { take(stamp); };
-    // The ages are consumed in the order in which take() stored them.
+    // The ages are read in the order in which take() stored them.
     auto age_us = ages_us_.begin();
     for (const KeptFrame& one : frames_kept_) {
       AcceptedFrame frame;
@@ -131,20 +133,20 @@ class NodeListener final : public DeviceListener {
  private:
   struct KeptFrame {
     HostTime arrival{};
-    std::uint32_t exchange = 0;  // index of its exchange, in exchanges_ or clockless_
+    std::uint32_t exchange = 0;  // index of its exchange in exchanges_ or clockless_
     std::uint8_t samples = 0;
     bool has_counter = false;
   };
-  // Deques, because a growing vector occupies up to twice the memory that it needs.
+  // Deques are used, because a growing vector may occupy twice the needed memory.
   AcceptedFrames frames_;
   std::deque<KeptFrame> frames_kept_;
-  std::deque<std::uint32_t> ages_us_;  // of all samples, in the order of the frames
+  std::deque<std::uint32_t> ages_us_;  // ages of all samples, in the order of the frames
   std::deque<Exchange> exchanges_;
   std::deque<ClocklessExchange> clockless_;
   ImuContent content_;
 };
 
-/// Makes the rows of one node: one for each sample of an accepted frame, in the order of stamps.
+/// Makes one row for each sample of the node's accepted frames, in the order of stamps.
 class NodeRows final : public DeviceRows<ImuSamples> {
  public:
   NodeRows(const DeviceRequest& request, std::shared_ptr<const LearnedDevice> learned)
@@ -153,17 +155,17 @@ class NodeRows final : public DeviceRows<ImuSamples> {
         converter_(ImuUnits{axes_of(y_up, request.options), 1.0, 1.0}) {
     const RawChannel& channel = learned_->channel;
     const std::string& own = channel.place.empty() ? channel.node : channel.place;
-    // The manifest's name comes first, then the place of the lab, then the id.
+    // The name in the manifest is preferred to the place in lab.toml, and the place to the id.
     header_.node_names = {request.file.node.empty() ? own : request.file.node};
     header_.content = learned_->content;
   }
 
-  /// Stamps the samples of an accepted frame. A sample without a known clock is counted and left
-  /// out.
+  /// Stamps the samples of an accepted frame. If the clock of a sample is not known, the sample is
+  /// left out and counted.
   Result<void> take(const RecordedMessage& message, ImuSamples& out) override {
     if (message.is_exchange()) {
-      // The exchange must be decoded although nothing is done with it: it accepts the frame after
-      // it.
+      // The exchange itself is not needed, but must be decoded, because it shows that the next
+      // frame was accepted.
       (void)frames_.take_exchange(message);
       return {};
     }
@@ -177,7 +179,7 @@ class NodeRows final : public DeviceRows<ImuSamples> {
     return {};
   }
 
-  /// Makes the remaining rows and reports what was left out.
+  /// Makes the remaining rows and adds findings about samples that were left out.
   Result<void> finish(ImuSamples& out) override {
     waiting_.finish(appending(out));
     converter_.report(file(), findings);
@@ -203,8 +205,8 @@ class NodeRows final : public DeviceRows<ImuSamples> {
     };
   }
 
-  /// Appends one row. A sample that lacks a part of the stream's content, or has another kind of
-  /// acceleration, is not valid.
+  /// Appends one row. A sample is marked as invalid if it lacks a part of the stream's content, or
+  /// if its kind of acceleration differs from the stream's.
   void append(const NodeSample& sample, ImuSamples& out) {
     const std::array<double, 4> q{sample.orientation[0], sample.orientation[1],
                                   sample.orientation[2], sample.orientation[3]};
@@ -213,12 +215,12 @@ class NodeRows final : public DeviceRows<ImuSamples> {
     const std::array<double, 3> w{sample.angular_velocity[0], sample.angular_velocity[1],
                                   sample.angular_velocity[2]};
     const ImuContent& content = header_.content;
-    // The converter turns axes and checks the quaternion; absent quantities stay null.
+    // The converter changes the axes and checks the quaternion. Absent quantities stay null.
     RawImuSample raw;
     if (content.orientation) raw.orientation = q.data();
     if (content.acceleration) raw.acceleration = a.data();
     if (content.angular_velocity) raw.angular_velocity = w.data();
-    // A sample with the other kind of acceleration would be wrong by 1 g.
+    // A sample with the other kind of acceleration would have an error of 1 g.
     const bool mixed = sample.has_acceleration && sample.gravity_included != content.gravity;
     raw.valid = sample.has_orientation >= content.orientation &&
                 sample.has_acceleration >= content.acceleration &&

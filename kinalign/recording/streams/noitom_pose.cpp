@@ -11,13 +11,13 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t noitom_joints = 59, hierarchy_joint = 10;
-// as in formats/bvh/rows.cpp; a greater value is not a coordinate or an angle
+// The same limit as in formats/bvh/rows.cpp. A larger value is not a coordinate or an angle.
 constexpr double largest = 1e15;
 constexpr std::string_view both =
     "the stream does not say which of Noitom's two 59-joint hierarchies it follows, legacy (Axis "
     "Neuron: joint 10 is Spine3) or Studio (Axis Studio: joint 10 is Neck)";
 
-/// The words for an error about the header.
+/// The words for a hierarchy in a finding.
 std::string_view word(NoitomHierarchy hierarchy) {
   if (hierarchy == NoitomHierarchy::legacy) return "the legacy one";
   return hierarchy == NoitomHierarchy::studio ? "the Studio one" : "neither";
@@ -39,7 +39,7 @@ NoitomHierarchy noitom_hierarchy(const BvhHierarchy& hierarchy) {
 }
 
 NoitomPoser::NoitomPoser(BvhHierarchy hierarchy, const BvhOptions& options, std::string name)
-    // The poser refers to the hierarchy, which is therefore a member and comes first.
+    // poser_ keeps a reference to hierarchy_, so hierarchy_ is a member and is initialised first.
     : hierarchy_(std::move(hierarchy)), poser_(hierarchy_, options), name_(std::move(name)) {}
 
 Result<void> NoitomPoser::append(const NoitomFrame& frame, Time stamp, ClipFrames& out) {
@@ -58,7 +58,8 @@ Result<void> NoitomPoser::append(const NoitomFrame& frame, Time stamp, ClipFrame
   }
   row_.assign(row.begin(), row.end());
   poser_.append(row_, out);
-  // The poser counts stamps by the BVH's step; a recorded frame has its own stamp.
+  // The poser computes stamps from the BVH's frame time. A recorded frame has its own stamp
+  // instead.
   out.stamps.back() = stamp;
   return {};
 }

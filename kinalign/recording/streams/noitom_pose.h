@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts frames of the Noitom stream, which contain no skeleton, to poses of the skeleton of a
-// BVH.
+// Converts frames of the Noitom stream to poses. The stream contains no skeleton, so a BVH file
+// supplies it.
 #pragma once
 
 #include "kinalign/formats/bvh/bvh.h"
@@ -8,31 +8,32 @@
 
 namespace kinalign {
 
-/// The two orders of 59 joints in Noitom's programs. Joint 10, counted from 0, distinguishes them.
+/// The two orders of the 59 joints in Noitom's programs. Joint 10 (counted from 0) distinguishes
+/// them.
 enum class NoitomHierarchy : std::uint8_t {
-  legacy,  // Axis Neuron: Spine3 and one neck
-  studio,  // Axis Studio: Neck and Neck1, the shoulders on Spine2
+  legacy,  // Axis Neuron: the spine has a Spine3, and there is one neck joint
+  studio,  // Axis Studio: Neck and Neck1; the shoulders are children of Spine2
   other
 };
 NoitomHierarchy noitom_hierarchy(const BvhHierarchy& hierarchy);
 
-/// Returns whether all values of a frame are plausible as coordinates or angles.
+/// True if all values of a frame are plausible as coordinates or angles.
 bool has_sound_values(std::span<const float> row);
 
-/// Uses a frame as a row of the BVH, with its channel order and units.
+/// Reads a frame as a row of the BVH file, with the file's channel order and units.
 class NoitomPoser {
  public:
-  /// `name`: the header's file, used in messages. `options.start` is not used, since frames have
-  /// stamps.
+  /// `name`: the file of the hierarchy, for messages. `options.start` is not used, because frames
+  /// have their own stamps.
   NoitomPoser(BvhHierarchy hierarchy, const BvhOptions& options, std::string name);
 
-  /// Appends the pose. A reference in front of the pose is left out. Fails and appends nothing if
-  /// the number of values differs from the header's number of channels, or if a value is not a
-  /// number.
+  /// Appends the pose. If the frame begins with a reference, the reference is left out. Fails and
+  /// appends nothing if the frame's number of values differs from the number of channels, or if a
+  /// value is not a number.
   Result<void> append(const NoitomFrame& frame, Time stamp, ClipFrames& out);
 
-  /// A warning if the header has neither of Noitom's two orders, since its channels may then not
-  /// match the values.
+  /// A warning if the hierarchy has neither of Noitom's two orders. Its channels may then not match
+  /// the values.
   Findings findings() const;
 
  private:

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of Noitom's frames: poses of the skeleton whose BVH header the recording contains. Stamps
-// come from the frame number that the source sends. Over a connection, which loses no frame, frames
-// without a number are counted. In datagrams without a number, stamps are arrivals.
+// Makes rows of Noitom's frames: poses of the skeleton in the recording's BVH head. Stamps come
+// from the frame numbers that the source sends. If frames have no number and came over a
+// connection, they are counted, because a connection loses no frame. If they came in datagrams, the
+// stamps are the arrivals.
 #include "kinalign/protocols/noitom/receiver.h"
 #include "kinalign/recording/streams/device_rows.h"
 #include "kinalign/recording/streams/noitom_pose.h"
@@ -11,7 +12,7 @@ namespace kinalign {
 
 namespace {
 
-/// The parts of NumberedFrames and NumberedRows that differ between sources, for Noitom.
+/// The part of NumberedFrames and NumberedRows that is specific to Noitom.
 struct NoitomSource {
   static constexpr std::string_view what = "frames of Noitom's stream";
   static constexpr std::string_view frames = "frames";
@@ -23,7 +24,7 @@ struct NoitomSource {
 };
 using NoitomFrames = NumberedFrames<NoitomSource>;
 
-/// The hierarchy of the BVH header. Fails if neither recording nor manifest has one.
+/// The hierarchy in the BVH head. Fails if neither the recording nor the manifest has a BVH head.
 Result<BvhHierarchy> hierarchy_of(const LearnedDevice& learned, const std::string& file) {
   if (learned.skeleton.empty()) {
     return Failure(
@@ -33,20 +34,20 @@ Result<BvhHierarchy> hierarchy_of(const LearnedDevice& learned, const std::strin
                   "manifest now, or in lab.toml before recording",
               "none", ErrorKind::no_rows_in_recording});
   }
-  // The number of rows and the findings of the header's own file do not matter here.
+  // The number of rows and the findings of the BVH file do not matter here.
   std::size_t rows = 0;
   Findings odd;
   return parse_bvh_hierarchy(learned.skeleton, learned.channel.stream + ".bvh", rows, odd);
 }
 
-/// The number of values in a frame; 0 if one is not a number, since NoitomPoser refuses such a
-/// frame.
+/// The number of values in a frame; 0 if a value is not a number, because NoitomPoser refuses such
+/// a frame.
 std::uint32_t noitom_shape(const NoitomFrame& frame) {
   const auto row = frame.row();
   return has_sound_values(row) ? static_cast<std::uint32_t>(row.size()) : 0;
 }
 
-/// Learns the clock from the numbers of frames. Only a frame's number, arrival and size are kept.
+/// Learns the clock from the frame numbers. Only number, arrival and size of each frame are kept.
 class NoitomListener final : public DeviceListener {
  public:
   explicit NoitomListener(std::optional<std::uint64_t> body) : frames_(body) {}
@@ -57,7 +58,8 @@ class NoitomListener final : public DeviceListener {
     keys_.add(placed_, noitom_shape);
   }
 
-  /// Counts frames at the header's frame time. If any frame has no number, all stamps are arrivals.
+  /// Counts frames at the frame time of the BVH head. If any frame has no number, all stamps are
+  /// arrivals.
   Result<void> finish(const DeviceRequest& request, LearnedDevice& learned) override {
     placed_.clear();
     frames_.finish(placed_);
@@ -67,7 +69,7 @@ class NoitomListener final : public DeviceListener {
       return Failure(
           no_rows_error(NoitomSource::what, request.file.path, learned, frames_.others()));
     }
-    // A recording without a header fails here, before the later passes need it.
+    // A recording without a BVH head fails here, before the later passes need the head.
     const BvhHierarchy hierarchy = KA_TRY(hierarchy_of(learned, request.file.path));
     row_size_ = hierarchy.row_size();
     learned.step_ns = 1e9 * hierarchy.frame_seconds;
@@ -80,7 +82,8 @@ class NoitomListener final : public DeviceListener {
   }
 
   void stamp_rows(const LearnedDevice& learned, const TakeStamp& take) const override {
-    // The same test as in NoitomPoser::append, by the frame's number of values.
+    // The same test as in NoitomPoser::append(), because a row is made only if the number of values
+    // fits.
     keys_.stamp_rows(
         learned, [this](std::uint32_t values) { return values == row_size_; }, take);
   }
@@ -96,7 +99,7 @@ class NoitomRows final : public NumberedRows<NoitomSource, ClipFrames> {
  public:
   NoitomRows(const DeviceRequest& request, const std::shared_ptr<const LearnedDevice>& learned)
       : NumberedRows(request, learned) {
-    // the first pass has read it without an error
+    // The first pass has read the hierarchy without an error, so this call succeeds.
     const auto hierarchy = hierarchy_of(*learned, request.file.path);
     if (!hierarchy) return;
     const BvhOptions options = bvh_options(request.options);

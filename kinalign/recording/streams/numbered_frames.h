@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads frames of a source that numbers them: noitom_rows.cpp and xsens_rows.cpp. Also makes the
-// clock of nodes without a counter for node_rows.cpp.
+// Reads the frames of a source that numbers its frames, for noitom_rows.cpp and xsens_rows.cpp.
 #pragma once
 
 #include "kinalign/protocols/protocols.h"
@@ -20,23 +19,23 @@
 
 namespace kinalign {
 
-/// A frame, and its place in the count of its sender.
+/// A frame with its position in the count of its sender.
 template <class Frame>
 struct PlacedFrame {
   Frame frame;
-  std::optional<CountedFrame> place;  // absent: the frame has no number
+  std::optional<CountedFrame> place;  // empty if the frame has no number
   HostTime arrival{};
 };
 
-/// The frames of one body, without duplicates. `Source` has the types Decoder, Arrival and Frame,
-/// and gives an arrival's frame (if it is one) and body. Each connection and each sender has its
-/// own decoder, which counts the frames of each body.
+/// The frames of one body, without duplicates. `Source` defines the types Decoder, Arrival and
+/// Frame, and returns frame and body of an arrival. Each connection and each sender has its own
+/// decoder, which counts the frames of each body.
 template <class Source>
 class NumberedFrames {
  public:
   using Placed = PlacedFrame<typename Source::Frame>;
 
-  /// Without a body, the body of the first frame is used.
+  /// If no body is given, the body of the first frame is used.
   explicit NumberedFrames(std::optional<std::uint64_t> body) : body_(body) {}
 
   void take(const RecordedMessage& message, std::vector<Placed>& out) {
@@ -47,20 +46,20 @@ class NumberedFrames {
     feed(from, message);
     place(from, message.arrival, out);
   }
-  /// Call after the last message. Passes on frames that a decoder held back.
+  /// Call this after the last message. It passes on the frames that a decoder has delayed.
   void finish(std::vector<Placed>& out) {
     if constexpr (holds_back) {
       for (auto& [id, from] : channels_) {
         arrivals_.clear();
         from.decoder.finish(arrivals_);
-        place(from, HostTime{}, out);  // these frames have arrivals of their own
+        place(from, HostTime{}, out);  // each of these frames has its own arrival
       }
     }
   }
 
-  /// Arrivals of other types or bodies than selected.
+  /// The number of frames of other types or bodies than selected.
   std::uint64_t others() const { return others_; }
-  /// Findings about the bytes. A finding that several connections have in common is returned once.
+  /// Findings about the bytes. If several connections have the same finding, it is returned once.
   Findings findings(const std::string& file) const {
     Findings all;
     for (const auto& [id, channel] : channels_) {
@@ -74,7 +73,7 @@ class NumberedFrames {
 
  private:
   using Arrival = typename Source::Arrival;
-  /// The decoder looks at whole datagrams and may return a frame later than it arrived.
+  /// True if the decoder needs whole datagrams and may return a frame later than it arrived.
   static constexpr bool holds_back = requires(Arrival one) { one.arrival; };
   struct Channel {
     typename Source::Decoder decoder;
@@ -92,8 +91,8 @@ class NumberedFrames {
     }
     from.decoder.feed(octets(message.payload), arrivals_);
   }
-  /// Selects the body's frames and gives each its number. The channel is part of the life, so that
-  /// connections have separate counts.
+  /// Selects the body's frames and gives each frame its number. The channel is part of `life`, so
+  /// that each connection has a separate count.
   void place(Channel& from, HostTime arrival, std::vector<Placed>& out) {
     for (Arrival& one : arrivals_) {
       auto* frame = Source::frame(one);
@@ -103,14 +102,14 @@ class NumberedFrames {
         continue;
       }
       if (one.order == Order::duplicate) continue;
-      // A connection loses nothing, so counting frames gives the numbers that the source did not
-      // send.
+      // If the source sends no numbers, frames of a connection are counted instead, because a
+      // connection loses no frames.
       std::optional<SequencePlace> place = one.place;
       if (!place && from.lossless) place = SequencePlace{0, from.counted++};
       Placed placed{std::move(*frame), {}, arrival};
       if constexpr (holds_back) placed.arrival = one.arrival.value_or(arrival);
       if (place) {
-        // A channel has few runs; its id takes the upper bits.
+        // The upper 32 bits are the channel's id, and the lower 32 bits are the run of the sender.
         const BootKey life = (place->run + 1) | BootKey{from.id} << 32U;
         placed.place = CountedFrame{life, place->number, placed.arrival};
       }
@@ -124,16 +123,17 @@ class NumberedFrames {
   std::vector<Arrival> arrivals_;
 };
 
-/// The stamp of a numbered frame. Absent if its clock is not known.
+/// The stamp of a numbered frame; empty if its clock is not known.
 inline std::optional<Time> stamp_of(const LearnedDevice& learned, const CountedFrame& frame) {
   return stamp_of(learned.clock, frame.life, counter_of(frame, learned.step_ns), frame.arrival);
 }
 
-// no frame was seen to arrive later than that many newer ones
+// In all observed recordings, no frame arrived later than this many newer frames.
 constexpr std::size_t most_reordered_frames = 16;
 
-/// Stamps the frames of a datagram without a time. The last frame's stamp is the arrival. The
-/// frames before it are one step apart, or less if they would reach back to the previous message.
+/// Stamps the frames of a message that contains no time. The stamp of the last frame is the arrival
+/// of the message. The earlier frames are `step_ns` apart, or less if they would be earlier than
+/// the previous message.
 class ArrivalStamps {
  public:
   explicit ArrivalStamps(const LearnedDevice& learned)
@@ -143,10 +143,10 @@ class ArrivalStamps {
   template <class Take>
   void add(HostTime arrived, std::size_t frames, const Take& take) {
     const Time arrival{arrived.time_since_epoch() + utc_minus_host_};
-    // The number of steps from a frame to the message's last one, which has the arrival itself.
+    // The number of time steps from a frame to the last frame of the message.
     auto behind = static_cast<Duration::rep>(frames);
     Duration step = step_;
-    // Frames must not reach back before the message before, or stamps would not rise.
+    // Frames must not be earlier than the previous message, because stamps must rise.
     if (any_before_) step = std::clamp((arrival - before_) / behind, Duration{0}, step);
     for (std::size_t k = 0; k < frames; ++k) take(k, arrival - --behind * step);
     any_before_ = true;
@@ -159,11 +159,11 @@ class ArrivalStamps {
   Time before_{};
 };
 
-/// The data kept of each frame, so that its row can be stamped when the clock is known.
+/// The data that are kept of each frame, so that its row can be stamped when the clock is known.
 class FrameKeys {
  public:
-  /// Adds a message's frames. `shape` returns a value that decides whether a row can be made of a
-  /// frame.
+  /// Adds the frames of a message. `shape` returns a number that later decides whether the frame
+  /// gives a row.
   template <class Frame, class Shape>
   void add(const std::vector<PlacedFrame<Frame>>& placed, const Shape& shape) {
     for (const auto& one : placed) {
@@ -184,8 +184,9 @@ class FrameKeys {
     }
     return frames;
   }
-  /// Passes on the stamp of each row. `fits`: decides by a frame's shape; called in the order of
-  /// the rows. Frames wait and leave the queue as in NumberedRows, so the orders are equal.
+  /// Passes on the stamp of each row. `fits` decides by a frame's shape whether it gives a row; it
+  /// is called in the order of the rows. Frames are sorted by the same queue as in NumberedRows, so
+  /// the order is the same.
   template <class Fits>
   void stamp_rows(const LearnedDevice& learned, Fits fits,
                   const DeviceListener::TakeStamp& take) const {
@@ -207,7 +208,7 @@ class FrameKeys {
     bool is_numbered = false, ends_message = false;
     std::uint32_t shape = 0;
   };
-  /// Stamps the frames of each message by its arrival.
+  /// Stamps the frames of each message by the message's arrival.
   template <class Put>
   void stamp_by_arrivals(const LearnedDevice& learned, const Put& put) const {
     ArrivalStamps stamps(learned);
@@ -222,12 +223,12 @@ class FrameKeys {
     }
   }
 
-  std::deque<Key> keys_;  // a growing vector occupies up to twice the memory that it needs
+  std::deque<Key> keys_;  // a growing vector may occupy twice the needed memory
 };
 
-/// Rows of numbered frames, in the order of their numbers: frames that the network reordered are
-/// sorted. `Source::frames` is a word for the frames, `Source::what` the text for an error without
-/// any.
+/// Makes rows of numbered frames, in the order of their numbers. Frames that the network reordered
+/// are sorted. `Source::frames` is a word for frames. `Source::what` is the text for an error if
+/// there are none.
 template <class Source, class Frames>
 class NumberedRows : public DeviceRows<Frames> {
  public:
@@ -243,8 +244,8 @@ class NumberedRows : public DeviceRows<Frames> {
     return {};
   }
 
-  /// Makes the remaining rows and reports what was left out. Fails if there is no row, unless the
-  /// header is known and every frame fitted.
+  /// Makes the remaining rows and adds findings about frames that were left out. Fails if there is
+  /// no row, unless the header is known and every frame fitted.
   Result<void> finish(Frames& out) final {
     placed_.clear();
     frames_.finish(placed_);
@@ -267,11 +268,11 @@ class NumberedRows : public DeviceRows<Frames> {
   }
 
  private:
-  /// Fails and appends nothing if the frame does not fit.
+  /// Appends a row. Fails and appends nothing if the frame does not fit.
   virtual Result<void> append(const typename Source::Frame& frame, Time stamp, Frames& out) = 0;
   virtual Findings further_findings() const { return {}; }
 
-  // The first frame that does not fit is kept as an example for the finding.
+  // The error of the first frame that does not fit is kept as an example for the finding.
   void put(const typename Source::Frame& frame, Time stamp, Frames& out) {
     auto appended = append(frame, stamp, out);
     if (appended) {
@@ -281,10 +282,10 @@ class NumberedRows : public DeviceRows<Frames> {
     if (!misfit_) misfit_ = std::move(appended).error();
     ++misfits_;
   }
-  /// Makes rows of the placed frames, which are stamped by arrival or by their clock.
+  /// Makes rows of the frames in placed_, stamped by arrival or by clock.
   void put_placed(Frames& out) {
     if (placed_.empty()) return;
-    // Arrivals rise by themselves, so rows stamped by them need no sorting.
+    // Arrivals rise already, so rows that are stamped by arrival need no sorting.
     if (learned_->by_arrival) {
       arrivals_.add(placed_.back().arrival, placed_.size(),
                     [&](std::size_t k, Time stamp) { put(placed_[k].frame, stamp, out); });
@@ -303,7 +304,7 @@ class NumberedRows : public DeviceRows<Frames> {
   NumberedFrames<Source> frames_;
   std::vector<PlacedFrame<typename Source::Frame>> placed_;
   RowsInOrder<typename Source::Frame> waiting_{most_reordered_frames};
-  ArrivalStamps arrivals_{*learned_};  // for frames that are stamped by arrival
+  ArrivalStamps arrivals_{*learned_};  // for frames without a clock
   std::optional<Error> misfit_;
   std::uint64_t appended_ = 0, misfits_ = 0;
 };

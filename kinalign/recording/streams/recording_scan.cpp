@@ -13,16 +13,17 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_hosts = 8;  // hosts of one stream that are listened to in the first pass
+constexpr std::size_t most_hosts = 8;  // hosts per stream that get a listener
 
-/// For each stream to listen to, the variants that are wanted. A stream that is wanted twice, with
-/// another body or as trackers, gets a listener for each.
+/// For each stream, the wanted variants of its rows. If a stream is wanted with two bodies, or with
+/// trackers, too, each variant gets its own listener.
 using Wanted = std::map<std::string, std::set<ListenVariant>>;
 Wanted wanted_of(const std::vector<StreamOptions>& streams) {
   Wanted wanted;
   for (const StreamOptions& options : streams) {
     for (const StreamFile& file : options.files) {
-      // A wrong selection is reported when its stream is opened; here it is left out.
+      // If the selection of a stream is wrong, the stream is left out here. Opening the stream
+      // later reports the error.
       const auto request = request_of(options, file);
       if (request) wanted[request->choice.stream].insert({request->trackers, request->body});
     }
@@ -30,8 +31,8 @@ Wanted wanted_of(const std::vector<StreamOptions>& streams) {
   return wanted;
 }
 
-/// The first pass: indexes the files, surveys and hashes them, and learns the devices' clocks. All
-/// of it happens in one reading, because recordings are larger than memory and disks are slow.
+/// The first pass: indexes, surveys and hashes the files, and learns the devices' clocks. Each file
+/// is read only once, because recordings are larger than memory and disks are slow.
 class Scan {
  public:
   Scan(ScannedRecording& state, std::optional<Wanted> wanted)
@@ -40,7 +41,7 @@ class Scan {
   Result<void> read(const Progress& progress) {
     std::vector<StoredChunks::File> versions;
     for (const RecordingPart& part : state_.parts) {
-      // Versions are taken before the files are read, so a change during the pass is noticed later.
+      // The versions are stored before reading, so that a change during the pass is noticed later.
       versions.push_back({part.path, version_of(part.path)});
       state_.input_facts.push_back({std::string(file_name(part.path)), "", 0});
     }
@@ -54,7 +55,7 @@ class Scan {
       surveyor_.take(*record);
       take_record(*record, stream);
     }
-    // The last chunk has no successor that would close it.
+    // The end of the recording closes the last chunk.
     end_chunk();
     state_.chunks =
         std::make_shared<StoredChunks>(*state_.files, std::move(versions), std::move(chunks_));
@@ -66,7 +67,7 @@ class Scan {
   }
 
  private:
-  /// Keeps a record's data for the later passes.
+  /// Keeps the data of a record that later passes need.
   void take_record(const McapRecord& record, const RecordStream& stream) {
     if (const auto* attachment = std::get_if<McapAttachment>(&record)) {
       if (attachment->name.ends_with(".bvh"))
@@ -80,20 +81,20 @@ class Scan {
     }
   }
 
-  /// Each chunk repeats the definitions of its channels, and so does the summary, which may be
+  /// Each chunk repeats the definitions of its channels. The summary repeats them, too, but may be
   /// damaged. The first definition is kept.
   void add(const McapChannel& channel) {
     if (state_.channels.contains(channel.id)) return;
     add_json(channel);
     const auto raw = to_raw(channel);
-    // Marks have a channel like a device, but are no stream.
+    // The channel of marks looks like a device's channel, but is not a stream.
     if (!raw || channel.topic == marks_topic) return;
     DeviceChannel& added = state_.channels[channel.id];
     added.raw = *raw;
     added.id = channel.id;
     state_.in_order.push_back(&added);
     if (raw->node.empty() && raw->protocol != exchange_encoding) {
-      // Nodes are distinguished by their ids, whatever address they have.
+      // The id identifies a node, whatever its address, so nodes are not listed as senders.
       added.sender = state_.senders[raw->stream].add(raw->sender);
     }
     if (wanted_) listen_to(added);
@@ -101,23 +102,24 @@ class Scan {
   void add_json(const McapChannel& channel) {
     const auto schema = schemas_.find(channel.schema_id);
     if (channel.message_encoding != "json" || schema == schemas_.end()) return;
-    // The recorder's own channels are shown by viewers; they need the schema.
+    // Viewers show the recorder's own channels and need their schemas.
     if (json_channels_.insert(channel.id).second) {
       state_.json.push_back({channel.id, channel.topic, schema->second});
     }
   }
 
-  /// Assigns a channel to the listeners of its device, one for each variant.
+  /// Assigns a channel to the listeners of its device. Each variant has its own listener.
   void listen_to(DeviceChannel& channel) {
     const RawChannel& raw = channel.raw;
-    // Without a manifest all streams are listened to, with their default options.
+    // If no streams are named, every stream gets a listener with default options.
     const std::set<ListenVariant> variants =
         wanted_->empty() ? std::set{ListenVariant{}} : (*wanted_)[raw.stream];
     for (const ListenVariant& variant : variants) {
       const DeviceKey key = key_of(raw, variant);
       auto found = state_.listening.find(key);
       if (found == state_.listening.end()) {
-        // Any program may send to a port. A flood of hosts must not cost a listener each.
+        // Any program may send to a port. The limit prevents a listener for each of very many
+        // hosts.
         if (raw.node.empty() && ++hosts_[raw.stream] > most_hosts) continue;
         const auto protocol = rows_of(protocol_of(raw), variant.trackers);
         auto listener = protocol ? protocol->listen(variant.body) : nullptr;
@@ -132,7 +134,7 @@ class Scan {
     const auto found = state_.channels.find(message.channel);
     const bool is_device = found != state_.channels.end();
     const bool is_json = json_channels_.contains(message.channel);
-    // Without facts the file is another program's, whose times mean something else.
+    // A file without facts comes from another program, and its times have another meaning.
     const bool counts = surveyor_.facts() && message.log_time <= latest_log_time;
     if (!counts || !(is_device || is_json)) return;
     add_to_index(message.channel, stream);
@@ -141,15 +143,15 @@ class Scan {
 
   void pass_on(DeviceChannel& from, const McapMessage& message) {
     const HostTime arrival = arrival_of(message.log_time, surveyor_.facts()->utc_minus_host());
-    // Nodes are not counted as senders: their ids name them.
+    // Nodes are not counted as senders, because their ids identify them.
     if (from.sender) state_.senders[from.raw.stream].count(*from.sender, arrival);
     for (const Listening* one : from.listening) {
       if (one->listener) one->listener->take({&from.raw, from.id, arrival, message.data});
     }
   }
 
-  /// Adds the stream's last message to the index of its chunk. Messages that are not added are left
-  /// out by the later passes.
+  /// Adds the last message to the index of its chunk. Later passes skip messages that are not in
+  /// the index.
   void add_to_index(std::uint16_t channel, const RecordStream& stream) {
     const McapReader& reader = stream.reader();
     if (chunk_.end == 0 || chunk_.part != stream.part() || chunk_.at != reader.at()) {
@@ -159,11 +161,12 @@ class Scan {
       chunk_.at = reader.at();
       chunk_.size = reader.size();
     }
-    // Messages between the last one and this one did not pass: they are damaged or repeated.
+    // The messages between the last indexed message and this one were damaged or duplicate. They
+    // are marked to be skipped.
     for (; chunk_.end < stream.place(); ++chunk_.end) chunk_.left_out.push_back(chunk_.end);
     ++chunk_.end;
     auto& channels = chunk_.channels;
-    // The channels are kept sorted, for a fast test in MessagePass.
+    // The list is sorted, so that MessagePass can search it quickly.
     const auto at = std::lower_bound(channels.begin(), channels.end(), channel);
     if (at == channels.end() || *at != channel) channels.insert(at, channel);
   }
@@ -172,12 +175,13 @@ class Scan {
     chunk_ = {};
   }
 
-  /// Keeps the marks, and reports damage, truncated files, and what is missing of the recording.
+  /// Keeps the marks. Adds findings about damage, truncated files and missing parts of the
+  /// recording.
   void judge(const RecordStream& stream) {
     const RecordingSurvey& survey = state_.survey;
     const std::string& last = state_.parts.back().path;
     for (const auto& [recorded, log_time] : survey.marks) {
-      // A later log time is damage and could not be a stamp.
+      // A later log time is damaged and can't be a stamp.
       if (log_time > latest_log_time) continue;
       const Time at{Duration{static_cast<std::int64_t>(log_time)}};
       state_.shared.marks.push_back({at, name_of(recorded.mark.kind), recorded.mark.text,
@@ -208,13 +212,13 @@ class Scan {
   }
 
   ScannedRecording& state_;
-  std::optional<Wanted> wanted_;  // absent: no device is listened to
+  std::optional<Wanted> wanted_;  // empty: no device gets a listener
   RecordingSurveyor surveyor_;
   std::vector<StoredChunk> chunks_;
   StoredChunk chunk_;  // the chunk of the last message
   std::map<std::uint16_t, McapSchema> schemas_;
   std::set<std::uint16_t> json_channels_;
-  std::map<std::string, std::size_t> hosts_;  // hosts of each stream
+  std::map<std::string, std::size_t> hosts_;  // number of hosts of each stream
 };
 
 }  // namespace

@@ -24,7 +24,7 @@
 
 namespace kinalign {
 
-/// The options of a listener besides its device.
+/// The options of a listener, in addition to its device.
 struct ListenVariant {
   bool trackers = false;
   std::optional<std::uint64_t> body;
@@ -32,14 +32,14 @@ struct ListenVariant {
   auto operator<=>(const ListenVariant&) const = default;
 };
 
-/// The listener of one device.
+/// The listener of one device, and the channels that it takes.
 struct Listening {
-  std::unique_ptr<DeviceListener> listener;  // nullptr: no rows can be made of the protocol
+  std::unique_ptr<DeviceListener> listener;  // nullptr if the protocol gives no rows
   std::vector<std::uint16_t> channels{};     // in the order of definition
 };
 
-/// A device, identified by its stream, node id, protocol and options. A device without a node id is
-/// identified by its sender's host.
+/// Identifies a device by stream, node id (if any), sender's host (if there is no node id),
+/// protocol and options.
 using DeviceKey =
     std::tuple<std::string, std::string, std::string, std::optional<Protocol>, ListenVariant>;
 inline DeviceKey key_of(const RawChannel& raw, const ListenVariant& variant) {
@@ -51,40 +51,40 @@ inline DeviceKey key_of(const RawChannel& raw, const ListenVariant& variant) {
 struct DeviceChannel {
   RawChannel raw;
   std::uint16_t id = 0;
-  std::optional<std::size_t> sender{};  // number in the stream's SenderTable
-  std::uint64_t missing = 0;            // messages missing between others
+  std::optional<std::size_t> sender{};  // index in the stream's SenderTable
+  std::uint64_t missing = 0;            // numbers missing between the channel's messages
   std::vector<Listening*> listening{};
 };
 
-/// A JSON channel of the recorder itself: marks, counts, or the host's clocks.
+/// A channel of the recorder itself with JSON messages: marks, counts, or the host's clocks.
 struct JsonChannel {
   std::uint16_t id = 0;
   std::string topic;
   McapSchema schema;
 };
 
-/// The result of the first pass. Later passes need nothing else of the files: chunks are found by
-/// the index, and clocks are learnt by the listeners. Pointers into `channels` and `listening` stay
-/// valid, because maps do not move their elements.
+/// The result of the first pass. Later passes need nothing else: the index gives the positions of
+/// chunks, and the listeners know the clocks. Pointers into `channels` and `listening` stay valid,
+/// because maps do not move their elements.
 struct ScannedRecording {
   FileSystem* files = nullptr;
   std::string path;
   RecordingParts parts;
-  std::vector<InputFacts> input_facts;  // by part
+  std::vector<InputFacts> input_facts;  // one for each part
   RecordingSurvey survey;
   SharedFile shared;
   std::shared_ptr<const StoredChunks> chunks;
   std::map<std::uint16_t, DeviceChannel> channels;
-  std::vector<const DeviceChannel*> in_order;      // in the order of definition
-  std::map<std::string, SenderTable> senders;      // by stream; nodes are not included
-  std::map<std::string, std::string> attachments;  // BVH headers, by name
+  std::vector<const DeviceChannel*> in_order;      // channels in the order of definition
+  std::map<std::string, SenderTable> senders;      // by stream; inertial nodes are not included
+  std::map<std::string, std::string> attachments;  // BVH heads by name
   std::map<DeviceKey, Listening> listening;
   std::vector<JsonChannel> json;
 };
 
-/// Reads all parts of the recording to which the file belongs. `wanted`: the streams to listen to,
-/// with paths that can be opened as they are; empty: all streams; nullptr: none, the recording is
-/// only surveyed.
+/// Reads all parts of the recording to which the file belongs. `wanted`: the streams whose devices
+/// get a listener. Their paths must be ready to be opened. An empty list means all streams. nullptr
+/// means that the recording is only surveyed.
 Result<ScannedRecording> scan_recording(FileSystem& files, const std::string& path,
                                         const std::vector<StreamOptions>* wanted,
                                         const Progress& progress);

@@ -14,13 +14,13 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_names = 32;  // streams or nodes named in one message
+constexpr std::size_t most_names = 32;  // most streams or nodes that one message names
 
 /// The functions for the device's protocol. Fails if the protocol does not fit the selection.
 Result<DeviceProtocol> maker_of(const RawChannel& channel, const DeviceRequest& request) {
   const std::string& file = request.file.path;
   const auto protocol = protocol_of(channel);
-  // A skeleton that no one reads would be a mistake of the manifest.
+  // If no protocol uses the skeleton, the manifest has a mistake.
   if (!request.skeleton.empty() && !(protocol && row_of(*protocol).needs_skeleton)) {
     return Failure(Error{file, 0, "a skeleton only for a noitom stream",
                          "a skeleton for " + shown(channel.stream) + ", whose protocol is " +
@@ -46,19 +46,19 @@ std::string node_name(const RawChannel& raw) {
   return shown(raw.node) + (raw.place.empty() ? "" : " (" + shown(raw.place) + ")");
 }
 
-/// The names appear in one message, so a few are enough.
+/// One message shows the names, so a limited number is kept.
 void remember(std::set<std::string>& names, const std::string& name) {
   if (names.size() < most_names) names.insert(name);
 }
 
-/// The channels of the wanted device, and names for an error. All of them are collected in one pass
-/// over the channels, because the error needs the names that were not chosen.
+/// The channels of the wanted device, and names for an error. One pass over the channels collects
+/// both, because the error lists devices that were not chosen.
 struct Chosen {
   std::vector<const DeviceChannel*> channels;  // in the order of definition
-  std::optional<RawChannel> first;             // the first channel of payloads
-  // names: all streams, all nodes, and the nodes that the selection names
+  std::optional<RawChannel> first;             // the first channel with the device's data
+  // The names of all streams, of all nodes, and of the nodes that fit the selection.
   std::set<std::string> streams, nodes, meant;
-  DeviceChoice choice;  // the selection, with open values filled in
+  DeviceChoice choice;  // the selection, including values that were filled in
 
   std::vector<std::uint16_t> ids() const {
     std::vector<std::uint16_t> ids;
@@ -67,8 +67,8 @@ struct Chosen {
   }
 };
 
-/// Tests one channel and fills the open fields of the choice: the first node or host decides. A
-/// selected node is compared by id and by place.
+/// True if the channel fits the choice. If node or host are left open, the first fitting channel
+/// decides them. A selected node may be given by id or by place.
 bool is_wanted(const RawChannel& raw, Chosen& chosen) {
   remember(chosen.streams, shown(raw.stream));
   DeviceChoice& choice = chosen.choice;
@@ -98,12 +98,12 @@ Result<Chosen> choose(const ScannedRecording& state, const DeviceRequest& reques
     chosen.channels.push_back(one);
     if (!chosen.first && one->raw.protocol != exchange_encoding) chosen.first = one->raw;
   }
-  // A stream of several nodes has no default node.
+  // If a stream has several nodes, the user must select one.
   if (choice.node.empty() && chosen.nodes.size() > 1) {
     return Failure(Error{file, 0, fmt::format("one node of stream {}: select.node", choice.stream),
                          fmt::format("{}", fmt::join(chosen.nodes, ", "))});
   }
-  // Two nodes may have had one place during the recording.
+  // During a recording, two nodes may have had the same place.
   if (chosen.meant.size() > 1) {
     return Failure(Error{
         file, 0,
@@ -120,7 +120,7 @@ Result<Chosen> choose(const ScannedRecording& state, const DeviceRequest& reques
         chosen.streams.empty() ? "a recording without data of a device"
                                : "'" + shown(choice.stream) + "'"});
   }
-  // The stream exists, but not this node or sender: the error lists those that there are.
+  // The stream exists, but this node or sender does not. The error lists the existing ones.
   const bool node = !chosen.nodes.empty();
   const auto table = state.senders.find(choice.stream);
   const auto hosts =
@@ -133,20 +133,20 @@ Result<Chosen> choose(const ScannedRecording& state, const DeviceRequest& reques
                        ErrorKind::no_rows_in_recording});
 }
 
-/// Reports progress. Fails if the user pressed Ctrl-C.
+/// Reports the progress. Fails if the user pressed Ctrl-C.
 Result<void> report_chunk(const Progress& progress, const MessagePass& pass) {
   if (go_on(progress, "reading again", pass.done(), pass.all())) return {};
   return Failure(interruption());
 }
 
-/// Returns the listener of the first pass if it has the same channels. Otherwise another listener
-/// reads the device's messages again.
+/// The listener of the first pass if it took exactly these channels. Otherwise a new listener reads
+/// the device's messages again.
 Result<std::unique_ptr<DeviceListener>> listener_of(ScannedRecording& state, const Chosen& chosen,
                                                     const DeviceProtocol& protocol,
                                                     ListenVariant variant,
                                                     const Progress& progress) {
   const auto found = state.listening.find(key_of(*chosen.first, variant));
-  // A listener is used once, since finish() takes its data.
+  // A listener can be used only once, because finish() moves its data away.
   const bool is_same = found != state.listening.end() && found->second.listener &&
                        found->second.channels == chosen.ids();
   if (is_same) return std::move(found->second.listener);
@@ -162,14 +162,14 @@ Result<std::unique_ptr<DeviceListener>> listener_of(ScannedRecording& state, con
   return listener;
 }
 
-/// A device whose clock was learnt, ready for its rows.
+/// A device whose clock is known, so that rows can be made.
 struct ReadyDevice {
   std::shared_ptr<const LearnedDevice> device;
   std::unique_ptr<DeviceListener> listener;
   DeviceProtocol protocol;
 };
 
-/// Fails if no rows can be made of the device.
+/// Learns the clock of the chosen device. Fails if the device gives no rows.
 Result<ReadyDevice> learn(ScannedRecording& state, const Chosen& chosen,
                           const DeviceRequest& request, const Progress& progress) {
   const DeviceProtocol protocol = KA_TRY(maker_of(*chosen.first, request));
@@ -177,7 +177,7 @@ Result<ReadyDevice> learn(ScannedRecording& state, const Chosen& chosen,
   learned.channel = *chosen.first;
   const auto attached = state.attachments.find(request.choice.stream + ".bvh");
   if (attached != state.attachments.end()) learned.skeleton = attached->second;
-  // The manifest's skeleton comes before the recording's own.
+  // A skeleton in the manifest replaces the recording's own skeleton.
   if (!request.skeleton.empty()) learned.skeleton = request.skeleton;
   learned.utc_minus_host = state.survey.facts->utc_minus_host();
   auto listener =
@@ -187,7 +187,7 @@ Result<ReadyDevice> learn(ScannedRecording& state, const Chosen& chosen,
                      protocol};
 }
 
-/// Reports messages that are missing between others.
+/// Adds a finding if numbers are missing between the device's messages.
 Findings judge_missing(const ScannedRecording& state, const Chosen& chosen) {
   std::uint64_t missing = 0;
   for (const DeviceChannel* one : chosen.channels) missing += one->missing;
@@ -198,7 +198,8 @@ Findings judge_missing(const ScannedRecording& state, const Chosen& chosen) {
            "the file is damaged, or the recording continues in a part that was not found", ""}};
 }
 
-/// After a clock has restarted, delayed samples can get earlier times than the samples before them.
+/// Adds a finding if stamps do not rise. After a restart of the device's clock, delayed samples can
+/// have earlier times than the samples before them.
 Findings judge_order(const std::string& file, const DeviceStream& stream) {
   StampSurveyor on_axis;
   for (const Time stamp : *stream.stamps) {
@@ -206,7 +207,8 @@ Findings judge_order(const std::string& file, const DeviceStream& stream) {
     on_axis.add({&at, 1});
   }
   const std::uint64_t rising = on_axis.result().kept();
-  // The survey of the device's own stamps kept more: some times fall only on the take's axis.
+  // The survey counts stamps that rise on the device's own clock. If fewer rise on the take's axis,
+  // some are out of order.
   if (rising >= stream.survey.kept()) return {};
   return {
       {Severity::warning,
@@ -217,8 +219,8 @@ Findings judge_order(const std::string& file, const DeviceStream& stream) {
        "still on the network"}};
 }
 
-/// Reads until the header is known. Without any rows it reads to the end, because an error there
-/// may give the reason.
+/// The header of the rows. It reads until the header is known. If there are no rows, it reads to
+/// the end, because an error there may explain why.
 template <class Frames>
 Result<typename DevicePass<Frames>::Header> header_of(const DevicePasses<Frames>& passes,
                                                       bool any_rows, const Progress& progress) {
@@ -230,13 +232,13 @@ Result<typename DevicePass<Frames>::Header> header_of(const DevicePasses<Frames>
   return *pass.header();
 }
 
-// The stamps are computed here, so that the listener and its memory are no longer needed for the
-// rows.
+// Makes the stream of a device. The stamps are computed here, so that the memory of the listener is
+// free before rows are made.
 Result<DeviceStream> stream_of(const ScannedRecording& state, const Chosen& chosen,
                                const DeviceRequest& request, ReadyDevice ready,
                                const Progress& progress) {
   DeviceStream out;
-  // The stamps are those of the rows in their order, without making a row.
+  // The listener gives the stamps of all rows in their order without making rows.
   auto stamps = std::make_shared<std::vector<Time>>();
   ready.listener->stamp_rows(*ready.device, [&](Time stamp) { stamps->push_back(stamp); });
   ready.listener.reset();
@@ -249,12 +251,13 @@ Result<DeviceStream> stream_of(const ScannedRecording& state, const Chosen& chos
   append(out.findings, judge_order(request.file.path, out));
   append(out.findings, ready.device->findings);
 
-  // The channels are shared by all passes and outlive this function.
+  // All passes share the channels, which must exist longer than this function.
   std::map<std::uint16_t, RawChannel> channels;
   for (const DeviceChannel* one : chosen.channels) channels[one->id] = one->raw;
   const auto shared =
       std::make_shared<const std::map<std::uint16_t, RawChannel>>(std::move(channels));
-  // This first object only tells which kind of frames the protocol makes; each pass makes its own.
+  // This object only shows the kind of frames that the protocol makes. Each pass makes its own
+  // object.
   AnyDeviceRows any = ready.protocol.rows(request, ready.device);
   KA_TRY(std::visit(
       [&]<class Frames>(std::unique_ptr<DeviceRows<Frames>>&) -> Result<void> {
@@ -275,7 +278,7 @@ Result<DeviceStream> stream_of(const ScannedRecording& state, const Chosen& chos
 
 }  // namespace
 
-// A chunk may complete no row, so chunks are read until there is one.
+// A chunk may complete no row, so chunks are read until there is a row.
 template <class Frames>
 Result<bool> DevicePass<Frames>::next(Frames& block, const Progress& progress) {
   block = {};
@@ -309,7 +312,7 @@ Result<std::shared_ptr<RecordingSource>> RecordingSource::open(
 Result<DeviceStream> RecordingSource::stream(const StreamOptions& options, const StreamFile& file,
                                              const Progress& progress) {
   DeviceRequest request = KA_TRY(request_of(options, file));
-  // The file of the skeleton is read now, so that each pass has the same one.
+  // The file of the skeleton is read only once, so that all passes use the same skeleton.
   if (!options.skeleton.empty()) {
     request.skeleton = KA_TRY(read_bvh_head(*state_.files, options.skeleton));
   }
@@ -319,7 +322,7 @@ Result<DeviceStream> RecordingSource::stream(const StreamOptions& options, const
   }
   const bool any_sender = request.choice.sender.empty();
   const SenderTable& senders = state_.senders[request.choice.stream];
-  // The sender with the most messages is chosen before the channels are.
+  // The sender with the most messages must be known before the channels are chosen.
   senders.complete(request.choice);
   const Chosen chosen = KA_TRY(choose(state_, request).map_error([&](Error error) {
     return with_nodes(request, survey(), std::move(error));
@@ -328,7 +331,7 @@ Result<DeviceStream> RecordingSource::stream(const StreamOptions& options, const
     return with_senders(std::move(error), request.choice.sender, senders);
   }));
   DeviceStream out = KA_TRY(stream_of(state_, chosen, request, std::move(ready), progress));
-  // The senders are judged last, when rows could be made of the chosen one.
+  // Findings about senders come last, because they assume that the chosen sender gave rows.
   append(out.findings, judge_senders(request, any_sender, senders));
   return out;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An opened recording. One pass over its files hashes them, surveys them, reads the exchanges of
-// all clocks and lists all senders. The streams of its devices are then read with the chunk index.
+// An opened recording. The first pass over its files hashes and surveys them, learns all clocks and
+// lists all senders. Later passes read the devices' streams with the index of the chunks.
 // docs/formats/recording.md.
 #pragma once
 
@@ -25,15 +25,15 @@
 
 namespace kinalign {
 
-/// The rows of one device, in blocks. Each pass has its own place and decoder; chunks are shared
-/// with other passes.
+/// Makes the rows of one device, in blocks. Each pass has its own position and decoder, but shares
+/// chunks with other passes.
 template <class FramesType>
 class DevicePass {
  public:
   using Frames = FramesType;
   using Header = typename DeviceRows<Frames>::Header;
 
-  using Channels = std::map<std::uint16_t, RawChannel>;  // channels of the device, by id
+  using Channels = std::map<std::uint16_t, RawChannel>;  // the device's channels by id
 
   DevicePass(MessagePass messages, std::shared_ptr<const Channels> channels,
              Duration utc_minus_host, std::unique_ptr<DeviceRows<Frames>> rows)
@@ -42,12 +42,12 @@ class DevicePass {
         utc_minus_host_(utc_minus_host),
         rows_(std::move(rows)) {}
 
-  /// Replaces the block by the next one. False after the last block. `progress` is called for each
-  /// chunk, since many chunks may have no row.
+  /// Replaces `block` by the next block. Returns false after the last block. `progress` is called
+  /// for each chunk, because many chunks may give no row.
   Result<bool> next(Frames& block, const Progress& progress = {});
-  /// nullptr until the first row, if the header depends on it.
+  /// The header; nullptr before the first row if the header depends on that row.
   const Header* header() const { return rows_->header(); }
-  /// Complete after the last block.
+  /// The findings are complete after the last block.
   const Findings& findings() const { return rows_->findings; }
 
  private:
@@ -58,31 +58,31 @@ class DevicePass {
   bool ended_ = false;
 };
 
-/// Starts a new pass from the beginning.
+/// A function that starts a new pass at the beginning.
 template <class Frames>
 using DevicePasses = std::function<DevicePass<Frames>()>;
 
-/// The stream of one device.
+/// The stream of one device, with everything that an alignment needs.
 struct DeviceStream {
-  StampSurvey survey;                               // survey of the rows' stamps
-  std::shared_ptr<const std::vector<Time>> stamps;  // stamps of the rows, in their order
-  TimeModel clock;                                  // converts the device's stamps to UTC
-  Findings findings;  // findings about the rows themselves come with a pass
+  StampSurvey survey;                               // about the stamps of the rows
+  std::shared_ptr<const std::vector<Time>> stamps;  // the stamp of each row, in order
+  TimeModel clock;                                  // converts the device's time to UTC
+  Findings findings;  // a pass has the findings about the rows themselves
   std::variant<DevicePasses<ClipFrames>, DevicePasses<PointFrames>, DevicePasses<ImuSamples>>
       passes;
   std::variant<Skeleton, PointHeader, ImuHeader> header;
 };
 
-/// An opened recording and the answers about its devices. The first pass happens in open();
-/// stream() reads a device's chunks again only if the first pass did not listen to it.
+/// An opened recording and its devices. open() makes the first pass. stream() reads a device's
+/// chunks again only if that pass had no listener for the device.
 class RecordingSource {
  public:
-  /// Whether streams will be read. If so, the first pass learns the devices' clocks too.
+  /// `learned`: the first pass also learns the devices' clocks, because streams will be read.
   enum class Devices { surveyed, learned };
 
-  /// Reads all parts of the recording to which the file belongs. `wanted`: streams of a manifest
-  /// that may select a body or trackers. `files` must outlive the source and the objects that it
-  /// returns. An MCAP file of another program can only be surveyed.
+  /// Reads all parts of the recording to which the file belongs. `wanted`: the streams of a
+  /// manifest, which may select a body or trackers. `files` must exist longer than the source and
+  /// the objects that it returns. An MCAP file of another program can only be surveyed.
   static Result<std::shared_ptr<RecordingSource>> open(
       FileSystem& files, const std::string& path, Devices devices,
       const std::vector<StreamOptions>& wanted = {}, const Progress& progress = {});
@@ -93,15 +93,13 @@ class RecordingSource {
   const std::string& path() const { return state_.path; }
   const RecordingParts& parts() const { return state_.parts; }
   const RecordingSurvey& survey() const { return state_.survey; }
-  /// Hash and length of each file, under the file's own name.
+  /// The hash and the length of each file, with the file's name.
   const std::vector<InputFacts>& facts() const { return state_.input_facts; }
-  /// Findings about the files, and the marks, which do not depend on the stream.
+  /// The marks, and findings about the files. They are the same for all streams.
   const SharedFile& shared() const { return state_.shared; }
 
-  /// The stream of select["stream"], by default of the options' name. select["node"], by default
-  /// the file's node, selects an inertial node. select["sender"] and select["body"] select one of
-  /// several senders or bodies (the avatar of mocap, the sensor of a SlimeVR tracker). A tracker's
-  /// node is its address. Must not be called from two threads at once.
+  /// The stream of one device. For the keys of `options.select` see request_of() in device_rows.h.
+  /// Must not be called from two threads at once.
   Result<DeviceStream> stream(const StreamOptions& options, const StreamFile& file,
                               const Progress& progress = {});
 
@@ -115,9 +113,9 @@ class RecordingSource {
   ScannedRecording state_;
 };
 
-/// A manifest with all devices of a recording as streams. Mocap comes first, so that its stamps are
-/// the grid, and a Kinect is fitted to its space. Nodes of one stream share one entry. `path`: the
-/// name of the file in the manifest.
+/// A manifest with all devices of a recording as streams. Mocap comes first, so that its stamps
+/// become the times of the take. A Kinect is fitted to the space of the mocap. The nodes of one
+/// stream share one entry. `path`: the file's name in the manifest.
 Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& path);
 
 }  // namespace kinalign

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sorts rows that a network reordered by their stamps.
+// Sorts rows by their stamps, because a network may reorder them.
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -12,17 +12,17 @@
 
 namespace kinalign {
 
-/// A queue that releases the earliest row when `most_reordered` others wait behind it. Rows leave
-/// in the order of their stamps; equal stamps keep the order of arrival. Memory is limited by the
-/// number of waiting rows.
+/// A queue that releases the earliest row when `most_reordered` other rows wait. Rows leave in the
+/// order of their stamps. Rows with equal stamps keep the order of arrival. The number of waiting
+/// rows limits the memory.
 template <class Row>
 class RowsInOrder {
  public:
-  /// `most_reordered`: number of rows that wait for delayed ones.
+  /// `most_reordered`: the number of rows that wait for delayed rows.
   explicit RowsInOrder(std::size_t most_reordered) : most_reordered_(most_reordered) {}
 
-  /// Adds a row and passes the earliest one to `release` if enough others wait. A row without a
-  /// stamp, or earlier than a row that was already released, is counted and left out.
+  /// Adds a row. If enough rows wait, passes the earliest row to `release`. A row is left out and
+  /// counted if it has no stamp, or if its stamp is earlier than that of a released row.
   template <class Release>
   void add(std::optional<Time> stamp, Row row, const Release& release) {
     if (!stamp) {
@@ -34,7 +34,7 @@ class RowsInOrder {
       if (waiting_.size() > most_reordered_) release_first(release);
     }
   }
-  /// Call after the last row. Releases all rows.
+  /// Call this after the last row. It releases all waiting rows.
   template <class Release>
   void finish(const Release& release) {
     while (!waiting_.empty()) release_first(release);
@@ -54,7 +54,7 @@ class RowsInOrder {
 
   std::size_t most_reordered_;
   std::multimap<Time, Row> waiting_;
-  std::optional<Time> released_;  // stamp of the last released row
+  std::optional<Time> released_;  // stamp of the row released last
   std::uint64_t too_late_ = 0, unstamped_ = 0;
 };
 

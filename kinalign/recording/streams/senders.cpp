@@ -14,12 +14,12 @@ namespace kinalign {
 
 namespace {
 
-// Chosen: while a device reconnects, messages of both connections may arrive for a moment.
+// A chosen limit. While a device reconnects, messages of both connections may arrive for a moment.
 constexpr Duration longest_reconnect = std::chrono::seconds(1);
 
-constexpr std::size_t most_named = 8;  // senders named in one message
+constexpr std::size_t most_named = 8;  // most senders that one message names
 
-/// The names in a list of limited length: any program can add senders.
+/// The first few names as a list, because any program can add senders.
 std::string some_of(std::vector<std::string> names) {
   const std::size_t all = names.size();
   names.resize(std::min(all, most_named));
@@ -29,7 +29,7 @@ std::string some_of(std::vector<std::string> names) {
 
 }  // namespace
 
-/// The port follows the last colon; an IPv6 address contains colons itself.
+/// The port follows the last colon. An IPv6 address contains further colons.
 std::string host_of(std::string_view sender) {
   return std::string(sender.substr(0, sender.rfind(':')));
 }
@@ -51,7 +51,8 @@ void SenderTable::count(std::size_t number, HostTime at) {
 }
 
 std::vector<std::string> SenderTable::hosts() const {
-  // Ports of one host are added up: a device that reconnects has several.
+  // The messages of all ports of a host are added up, because a device that reconnects uses several
+  // ports.
   std::map<std::string, std::uint64_t> messages;
   for (const Sender& sender : senders_) messages[host_of(sender.name)] += sender.messages;
   std::vector<std::string> hosts;
@@ -64,8 +65,8 @@ std::vector<std::string> SenderTable::hosts() const {
   return hosts;
 }
 
-/// Two senders are the same device in turn unless they sent at the same time. A short overlap
-/// happens when a device reconnects.
+/// True if two senders sent at the same time and are therefore two devices. A device that
+/// reconnects uses one port after the other; a short overlap is accepted.
 bool SenderTable::overlap(const Sender& a, const Sender& b) {
   const bool is_within = a.first <= b.first && b.last <= a.last;
   return is_within || std::min(a.last, b.last) - std::max(a.first, b.first) > longest_reconnect;
@@ -74,7 +75,7 @@ bool SenderTable::overlap(const Sender& a, const Sender& b) {
 void SenderTable::complete(DeviceChoice& choice) const {
   const auto all = hosts();
   if (choice.sender.empty() && !all.empty()) choice.sender = all.front();
-  // The busiest sender is taken first, so that a less busy one is compared with it and left out.
+  // The busiest sender is taken first. A less busy sender that overlaps with it is left out.
   std::vector<Sender> busiest_first = senders_, taken;
   std::stable_sort(busiest_first.begin(), busiest_first.end(),
                    [](const Sender& a, const Sender& b) { return a.messages > b.messages; });
@@ -89,7 +90,7 @@ void SenderTable::complete(DeviceChoice& choice) const {
   }
 }
 
-/// Only an error about missing rows can be helped by another sender.
+/// Other errors than missing rows do not depend on the sender, so they are returned unchanged.
 Error with_senders(Error error, const std::string& chosen, const SenderTable& senders) {
   if (error.kind != ErrorKind::no_rows_in_recording || senders.hosts().size() < 2) return error;
   error.found +=
@@ -100,7 +101,7 @@ Error with_senders(Error error, const std::string& chosen, const SenderTable& se
 Findings judge_senders(const DeviceRequest& request, bool any_sender, const SenderTable& senders) {
   const DeviceChoice& choice = request.choice;
   std::vector<std::string> others(choice.left_out.begin(), choice.left_out.end());
-  // If the user selected a sender, other hosts are left out on purpose and not reported.
+  // If the user selected a sender, other hosts were left out on purpose and are not reported.
   for (const std::string& host : any_sender ? senders.hosts() : std::vector<std::string>()) {
     if (host != choice.sender) others.push_back(host);
   }
@@ -111,11 +112,11 @@ Findings judge_senders(const DeviceRequest& request, bool any_sender, const Send
            "sender = \"...\" in select chooses another, an address or an address with its port"}};
 }
 
-/// The lines are those that a manifest of this recording would have, so the user can copy them.
+/// The lines are the same as in a manifest of this recording, so that the user can copy them.
 Error with_nodes(const DeviceRequest& request, const RecordingSurvey& survey, Error error) {
   if (!request.choice.node.empty()) return error;
   std::string path = request.file.path;
-  for (const StreamFile& file : request.options.files) {  // the path as written in the manifest
+  for (const StreamFile& file : request.options.files) {  // the paths as in the manifest
     if (request.file.path.ends_with(file.path)) path = file.path;
   }
   auto manifest = manifest_of(survey, path);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses among several senders of one stream: the busiest one is the device, and a finding names
-// the others. Any program can send a datagram to a port, and a device may return from another port
-// of its own.
+// Chooses among several senders of one stream. The busiest sender is the device, and a finding
+// names the others. Any program can send a datagram to a port. A device that reconnects may use
+// another port.
 #pragma once
 
 #include "kinalign/recording/streams/device_rows.h"
@@ -15,22 +15,23 @@
 
 namespace kinalign {
 
-/// The host of a sender: "192.168.7.20" for "192.168.7.20:51234".
+/// The host of a sender, for example "192.168.7.20" for "192.168.7.20:51234".
 std::string host_of(std::string_view sender);
 
-/// Counts the messages of one stream's senders. The first and the last arrival of each show whether
-/// two ports sent at the same time.
+/// Counts the messages of one stream's senders. The first and last arrival of each sender show
+/// whether two ports sent at the same time.
 class SenderTable {
  public:
-  /// Returns the number of a sender, given by address and port. A new sender gets a new number.
+  /// Returns the index of a sender, which is given by address and port. A new sender gets a new
+  /// index.
   std::size_t add(const std::string& sender);
   void count(std::size_t number, HostTime at);
 
-  /// Addresses with at least one message, the one with the most messages first.
+  /// The hosts with at least one message, sorted by the number of messages, highest first.
   std::vector<std::string> hosts() const;
-  /// Completes a choice: by default the address with the most messages. Of its ports that send at
-  /// the same time, only the one with the most messages is read. A device that returns from another
-  /// port sends from one port after the other, and all are read.
+  /// Completes a choice. The default is the host with the most messages. If several of its ports
+  /// sent at the same time, only the busiest port is read. If the ports sent one after the other,
+  /// they are one device that reconnected, and all are read.
   void complete(DeviceChoice& choice) const;
 
  private:
@@ -44,14 +45,15 @@ class SenderTable {
   std::vector<Sender> senders_;
 };
 
-/// Adds the names of all senders to an error: no rows could be made of the chosen one.
+/// Adds the names of all senders to the error that the chosen sender gives no rows.
 Error with_senders(Error error, const std::string& chosen, const SenderTable& senders);
 
-/// Reports senders that are not read. `any_sender`: the user selected none.
+/// Adds findings about senders that are not read. `any_sender`: the user selected no sender.
 Findings judge_senders(const DeviceRequest& request, bool any_sender, const SenderTable& senders);
 
-/// Adds help to an error if the stream has several nodes and none was selected: lines for the
-/// manifest that select one node, or all. Other errors are returned unchanged.
+/// Adds advice to an error if the stream has several nodes and the user selected none. The advice
+/// consists of lines for the manifest that select one node, or all nodes. Other errors are returned
+/// unchanged.
 Error with_nodes(const DeviceRequest& request, const RecordingSurvey& survey, Error error);
 
 }  // namespace kinalign

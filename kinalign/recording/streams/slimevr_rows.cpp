@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of one sensor of a SlimeVR tracker: rotations, each with the acceleration that arrived with
-// it or just before. The packets contain no time, so stamps are arrivals.
+// Makes rows of one sensor of a SlimeVR tracker. A row is a rotation, with the acceleration that
+// arrived with it or just before. The packets contain no time, so stamps are arrivals.
 #include "kinalign/formats/imu_converter.h"
 #include "kinalign/protocols/sequence_count.h"
 #include "kinalign/protocols/slimevr/packet.h"
@@ -17,7 +17,7 @@ namespace kinalign {
 
 namespace {
 
-/// An acceleration belongs to the next rotation if it is at most this old.
+/// An acceleration belongs to the next rotation if that arrives within this time.
 constexpr Duration goes_with = std::chrono::milliseconds(50);
 
 /// One rotation, with the acceleration that belongs to it, if any.
@@ -26,7 +26,7 @@ struct SlimeSample {
   std::optional<std::array<double, 3>> acceleration;
 };
 
-/// The samples of one sensor. Late and duplicate datagrams of each sender are left out.
+/// Collects the samples of one sensor. Late and duplicate datagrams of each sender are left out.
 class SlimeSamples {
  public:
   explicit SlimeSamples(std::optional<std::uint64_t> sensor) : sensor_(sensor) {}
@@ -36,14 +36,14 @@ class SlimeSamples {
     SlimeDatagram datagram;
     if (!decode_slime(octets(message.payload), datagram)) return;
     Tracker& tracker = trackers_[message.channel_id];
-    // The handshake is looked for first: it may come with other packets in one datagram.
+    // Handshakes are handled first, because a datagram may also contain other packets.
     for (const SlimePacket& packet : datagram.packets) {
       if (const auto* handshake = std::get_if<SlimeHandshake>(&packet)) {
         tracker = {};
         tracker.protocol = handshake->protocol.value_or(0);
       }
     }
-    // A datagram of number 0 is not counted, so its order is not known.
+    // A datagram with the number 0 has no place in the count, so it can't be late.
     if (datagram.number != 0 && is_old(tracker.numbers.push(datagram.number))) {
       ++overtaken;
       return;
@@ -57,21 +57,22 @@ class SlimeSamples {
     }
   }
 
-  /// Late and duplicate datagrams.
+  /// The number of late and duplicate datagrams.
   std::uint64_t overtaken = 0;
   std::set<unsigned> sensors;  // sensors with at least one rotation or acceleration
 
  private:
   static constexpr std::size_t most_sensors = 32;
 
-  // The state of one sender. Its protocol version decides the meaning of accelerations.
+  // The state of one sender. The protocol version determines the axes of accelerations.
   struct Tracker {
     SequenceCount numbers{64};
     std::int32_t protocol = 0;
     std::optional<std::array<double, 3>> acceleration{};
     HostTime felt{};
 
-    /// Keeps an acceleration. A rotation completes a sample and uses the acceleration up.
+    /// Keeps an acceleration until the next rotation. A rotation completes a sample with the
+    /// acceleration.
     void add(const SlimeMotion& motion, HostTime arrival, std::vector<SlimeSample>& out) {
       if (motion.acceleration) {
         acceleration = slime_acceleration(*motion.acceleration, protocol);
@@ -80,7 +81,7 @@ class SlimeSamples {
       if (!motion.rotation) return;
       const auto q = slime_orientation(*motion.rotation);
       if (!q) return;
-      // An older acceleration would belong to another moment than the rotation.
+      // An older acceleration does not belong to the time of this rotation.
       const bool fresh = acceleration && arrival - felt <= goes_with;
       out.push_back({*q, fresh ? acceleration : std::nullopt});
       acceleration.reset();
@@ -89,7 +90,7 @@ class SlimeSamples {
   static bool is_old(Order order) { return order == Order::late || order == Order::duplicate; }
 
   std::optional<std::uint64_t> sensor_;
-  std::map<std::uint16_t, Tracker> trackers_;  // by channel
+  std::map<std::uint16_t, Tracker> trackers_;  // one for each channel
 };
 
 Time stamp_at(HostTime arrival, const LearnedDevice& learned) {
@@ -117,8 +118,8 @@ class SlimeListener final : public DeviceListener {
           "none", ErrorKind::no_rows_in_recording});
     }
     stamp_by_arrival(file, learned);
-    // A tracker may send accelerations rarely. If fewer than half of the samples have one, the
-    // stream has no acceleration.
+    // A tracker may send few accelerations. If at most half of the samples have one, the stream has
+    // no acceleration.
     learned.content = {true, 2 * accelerations_ > arrivals_.size(), false, false};
     if (any_sensor_ && samples_.sensors.size() > 1) {
       learned.findings.push_back(
@@ -144,7 +145,7 @@ class SlimeListener final : public DeviceListener {
   std::uint64_t accelerations_ = 0;
 };
 
-/// Makes a row for each sample. It uses the same SlimeSamples as the listener, so both agree.
+/// Makes a row for each sample. SlimeListener uses the same SlimeSamples, so stamps and rows agree.
 class SlimeRows final : public DeviceRows<ImuSamples> {
  public:
   SlimeRows(const DeviceRequest& request, std::shared_ptr<const LearnedDevice> learned)
@@ -157,8 +158,8 @@ class SlimeRows final : public DeviceRows<ImuSamples> {
     header_.content = learned_->content;
   }
 
-  /// Makes a row for each sample. If the stream has accelerations, a sample without one is not
-  /// valid.
+  /// Makes a row for each sample. If the stream has accelerations, a sample without an acceleration
+  /// is marked as invalid.
   Result<void> take(const RecordedMessage& message, ImuSamples& out) override {
     taken_.clear();
     samples_.take(message, taken_);

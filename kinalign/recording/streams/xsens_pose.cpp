@@ -39,8 +39,8 @@ constexpr std::array<std::string_view, xsens_segments> names{"Pelvis",
 constexpr std::array<int, xsens_segments> parents{-1, 0,  1,  2, 3,  4,  5,  4, 7,  8,  9, 4,
                                                   11, 12, 13, 0, 15, 16, 17, 0, 19, 20, 21};
 
-/// Larger values are no lengths or accelerations; comparisons with NaN are false, so NaN is
-/// refused, too.
+/// True if all values are plausible. Larger values are not lengths or accelerations. NaN is
+/// refused, too, because comparisons with NaN are false.
 template <std::size_t n>
 bool sound(const std::array<float, n>& values) {
   return std::all_of(values.begin(), values.end(), [](float x) { return std::abs(x) < 1e15F; });
@@ -48,29 +48,29 @@ bool sound(const std::array<float, n>& values) {
 
 std::optional<Quat> unit_quaternion(const std::array<float, 4>& q) {
   const Quat turn(q[0], q[1], q[2], q[3]);
-  // The limit is a choice: floats round by 1e-7, and a norm that is wrong by more than 1 % is not a
-  // rotation.
+  // The limit is a choice. Floats have an error of 1e-7. A quaternion whose norm differs from 1 by
+  // more than 1 % is not a rotation.
   if (!sound(q) || std::abs(turn.norm() - 1.0) > 0.01) return std::nullopt;
   return turn.normalized();
 }
 
-/// The values as a vector, in the axes of Xsens.
+/// The values as a vector in the axes of Xsens (z up).
 Vec3 vector_of(const std::array<float, 3>& values) { return {values[0], values[1], values[2]}; }
 
-/// The vector in kinalign's axes: y up.
+/// The values as a vector in kinalign's axes (y up).
 Vec3 ours(const std::array<float, 3>& values) {
   const Vec3 file = vector_of(values);
   return turned(z_up, file.data());
 }
 
-/// The global pose of one sample, indexed by segment id - 1.
+/// The pose of one sample in the world. The index is the segment id - 1.
 struct Global {
-  std::array<Vec3, xsens_segments> places;  // in the stream's unit, y up
-  // rotated so that space and segments are y up in the rest pose
+  std::array<Vec3, xsens_segments> places;  // in the stream's unit of length, y up
+  // Rotated so that the world and all segments are y up in the rest pose.
   std::array<Quat, xsens_segments> turns;
 };
 
-// Segments may come in any order, but the first 23 items must be the 23 segments.
+// Computes the global pose. The first 23 items must be the 23 segments, in any order.
 Result<Global> global_of(const XsensPose& pose, const std::string& name) {
   const auto refused = [&name](const std::string& expected, const std::string& found) {
     return Failure(Error{name, 0, expected, found});
@@ -96,7 +96,8 @@ Result<Global> global_of(const XsensPose& pose, const std::string& name) {
     }
     here[at] = true;
     global.places[at] = ours(s.position);
-    // A rotation between z-up axes becomes one between y-up axes: both sides are turned.
+    // Converts a rotation between z-up axes to one between y-up axes. Both sides of the rotation
+    // change.
     global.turns[at] = up * *turn * up.conjugate();
   }
   return global;
@@ -104,7 +105,7 @@ Result<Global> global_of(const XsensPose& pose, const std::string& name) {
 
 constexpr double centimetre = 0.01;
 
-/// Bits of the shape of a sample of trackers, see xsens_shape().
+/// The bits of a sample's shape, see xsens_shape().
 constexpr std::uint32_t can_begin = 1, begins_raw = 2, all_raw = 4, none_raw = 8;
 
 /// The segment ids of the trackers. Fails if an id is unknown or occurs twice.
@@ -124,7 +125,7 @@ Result<std::vector<std::int32_t>> ids_of(const XsensTrackers& trackers, const st
 
 }  // namespace
 
-/// A pose fits if its global pose can be made; the text of an error is not needed.
+/// The shape is 1 if the global pose can be made. The text of an error is not needed here.
 std::uint32_t xsens_shape(const XsensPose& pose) { return global_of(pose, "") ? 1 : 0; }
 
 std::uint32_t xsens_shape(const XsensTrackers& trackers) {
@@ -138,15 +139,15 @@ std::uint32_t xsens_shape(const XsensTrackers& trackers) {
 }
 
 bool XsensFits<XsensTrackers>::operator()(std::uint32_t shape) {
-  // A sample can begin the stream only if its segments are known and differ.
+  // A sample can be the first of the stream only if its segments are known and all different.
   if (!raw_ && (shape & can_begin) == 0) return false;
   if (!raw_) raw_ = (shape & begins_raw) != 0;
   return (shape & (*raw_ ? all_raw : none_raw)) != 0;
 }
 
 // Chooses the unit of length. Xsens' document says centimetres, but MVN sends metres. If the pelvis
-// is 0.3 to 3 above the lowest segment, the unit is metres; from 30 on it is centimetres. If the
-// person lies, the segment furthest from the pelvis decides.
+// is 0.3 to 3 units above the lowest segment, the unit is the metre. From 30 units on it is the
+// centimetre. If the person lies down, the segment furthest from the pelvis decides.
 void XsensPoser::begin(std::span<const double> heights, double reach) {
   const double height = heights[0] - *std::min_element(heights.begin(), heights.end());
   const bool clear = (height >= 0.3 && height < 3.0) || height >= 30.0;
@@ -162,7 +163,7 @@ void XsensPoser::begin(std::span<const double> heights, double reach) {
                       ""});
 }
 
-// The first pose also fixes the unit of length and the skeleton.
+// Appends a pose. The first pose also determines the unit of length and the skeleton.
 Result<void> XsensPoser::append(const XsensPose& pose, Time stamp, ClipFrames& out) {
   const Global global = KA_TRY(global_of(pose, name_));
   if (!skeleton_) {
@@ -184,7 +185,7 @@ Result<void> XsensPoser::append(const XsensPose& pose, Time stamp, ClipFrames& o
     if (parents[k] >= 0) {
       const auto p = static_cast<std::size_t>(parents[k]);
       const Quat parent = global.turns[p].conjugate();
-      // A local rotation is parent^-1 * child; the local place is in the parent's space.
+      // A local rotation is parent^-1 * child. A local position is in the space of the parent.
       place = parent * (place - global.places[p] * metres_per_unit_);
       turn = parent * turn;
     }
@@ -214,19 +215,19 @@ Result<void> XsensNodes::begin(const XsensTrackers& trackers) {
 
 namespace {
 
-/// Writes one tracker of a sample. The sample is zero and not valid before.
+/// Writes one tracker of a sample, whose values are zero and marked as invalid before.
 void put(const XsensTracker& t, std::size_t at, ImuSamples& out) {
   const auto turn = unit_quaternion(t.rotation);
   const bool raw = t.raw.has_value();
   if (!turn || !sound(t.free_acceleration)) return;
   if (raw && !(sound(t.raw->acceleration) && sound(t.raw->angular_velocity))) return;
-  // Only the space is turned to y up: a tracker keeps its own axes, so its vectors are not turned.
+  // Only the world changes to y up. A tracker keeps its own axes, so its vectors stay unchanged.
   put_quat(out.orientation, at, rotation_of(z_up) * *turn);
   if (raw) {
     vec3(out.acceleration, at) = vector_of(t.raw->acceleration);
     vec3(out.angular_velocity, at) = vector_of(t.raw->angular_velocity);
   } else {
-    // The free acceleration is in Xsens' space and is turned back into the sensor's.
+    // The free acceleration is in Xsens' world space. It is rotated into the sensor's space.
     vec3(out.acceleration, at) = turn->conjugate() * vector_of(t.free_acceleration);
   }
   out.valid[at] = 1;
@@ -234,7 +235,7 @@ void put(const XsensTracker& t, std::size_t at, ImuSamples& out) {
 
 }  // namespace
 
-// Trackers that the first sample did not have are ignored.
+// Appends a sample. Trackers that are not in the first sample are ignored.
 Result<void> XsensNodes::append(const XsensTrackers& trackers, Time stamp, ImuSamples& out) {
   if (ids_.empty()) KA_TRY(begin(trackers));
   const auto other_kind = [this](const XsensTracker& t) {

@@ -18,11 +18,11 @@ namespace kinalign {
 
 constexpr std::size_t xsens_segments = 23;
 
-/// A value that decides whether XsensPoser accepts a pose, or XsensNodes a sample of trackers.
+/// A number that decides whether XsensPoser accepts a pose, or XsensNodes a sample of trackers.
 std::uint32_t xsens_shape(const XsensPose& pose);
 std::uint32_t xsens_shape(const XsensTrackers& trackers);
 
-/// Decides for one shape after the other whether its sample is accepted.
+/// Decides for each shape, in the order of samples, whether the sample is accepted.
 template <class Items>
 class XsensFits;
 template <>
@@ -36,26 +36,26 @@ class XsensFits<XsensTrackers> {
   bool operator()(std::uint32_t shape);
 
  private:
-  std::optional<bool> raw_;  // the kind of items of the first sample
+  std::optional<bool> raw_;  // whether the first sample had raw values
 };
 
-/// Poses of one character. The first pose fixes the skeleton and the unit of length, and both stay
+/// Makes the poses of one character. The first pose determines the skeleton and the unit of length
 /// for the whole stream.
 class XsensPoser {
  public:
   explicit XsensPoser(std::string name) : name_(std::move(name)) {}
 
-  /// Appends the pose of the first 23 items. Type 02 contains global positions and rotations. Local
-  /// ones are computed, so local positions are those of each frame, not of a skeleton. Fails and
-  /// appends nothing if one of the 23 segments is missing, occurs twice, contains a value that is
-  /// not a number, or has no unit quaternion.
+  /// Appends the pose of the first 23 items. Type 02 contains global positions and rotations, from
+  /// which local ones are computed. The local positions therefore differ from frame to frame. Fails
+  /// and appends nothing if one of the 23 segments is missing or occurs twice, if a value is not a
+  /// number, or if a quaternion is not a unit quaternion.
   Result<void> append(const XsensPose& pose, Time stamp, ClipFrames& out);
 
-  /// The 23 segments. nullptr before the first pose. The local positions of the first pose are the
-  /// rest offsets, since the stream has no rest pose.
+  /// The 23 segments; nullptr before the first pose. The stream has no rest pose, so the local
+  /// positions of the first pose serve as rest offsets.
   const Skeleton* skeleton() const { return skeleton_ ? &*skeleton_ : nullptr; }
 
-  /// The unit of length, and the reason for choosing it.
+  /// The unit of length, and the reason why it was chosen.
   Findings findings;
 
  private:
@@ -66,20 +66,20 @@ class XsensPoser {
   std::optional<Skeleton> skeleton_;
 };
 
-/// Inertial samples of one character. The first sample fixes the trackers, their order and what
-/// they measure.
+/// Makes the inertial samples of one character. The first sample determines the trackers, their
+/// order and their quantities.
 class XsensNodes {
  public:
   explicit XsensNodes(std::string name) : name_(std::move(name)) {}
 
-  /// Appends a sample of the trackers of the first sample. A tracker that is missing, or has a
-  /// value that is not a number, is not valid. Items of 68 bytes contain acceleration with gravity
-  /// and angular velocity. Items of 44 bytes contain the free acceleration without gravity, which
-  /// is rotated into the sensor's space. Fails if the kind of items changes, or if the first sample
-  /// has an unknown segment or names one twice.
+  /// Appends a sample of the trackers that the first sample has. If a tracker is missing or has a
+  /// value that is not a number, it is marked as invalid. Items of 68 bytes contain acceleration
+  /// with gravity and angular velocity. Items of 44 bytes contain the acceleration without gravity,
+  /// which is rotated into the sensor's space. Fails if the kind of items changes, or if the first
+  /// sample has an unknown segment or the same segment twice.
   Result<void> append(const XsensTrackers& trackers, Time stamp, ImuSamples& out);
 
-  /// nullptr before the first sample.
+  /// The header; nullptr before the first sample.
   const ImuHeader* header() const { return ids_.empty() ? nullptr : &header_; }
 
  private:

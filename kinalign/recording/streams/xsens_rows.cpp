@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of Xsens MVN's stream: poses, or the inertial samples of its trackers. Stamps come from the
-// sample counter.
+// Makes rows of Xsens MVN's stream: poses, or the inertial samples of the trackers. Stamps come
+// from the sample counter.
 #include "kinalign/protocols/xsens/stream.h"
 #include "kinalign/recording/streams/device_rows.h"
 #include "kinalign/recording/streams/numbered_frames.h"
@@ -15,8 +15,8 @@ constexpr std::string_view meaning = "poses (type 02) of Xsens MVN";
 template <>
 constexpr std::string_view meaning<XsensTrackers> = "trackers (type 23) of Xsens MVN";
 
-/// The parts of NumberedFrames and NumberedRows that differ between sources, for Xsens. `Items`:
-/// XsensPose or XsensTrackers, which come in the same stream.
+/// The part of NumberedFrames and NumberedRows that is specific to Xsens. `Items` is XsensPose or
+/// XsensTrackers; both come in the same stream.
 template <class Items>
 struct XsensSource {
   static constexpr std::string_view what = meaning<Items>;
@@ -30,8 +30,8 @@ struct XsensSource {
 template <class Items>
 using XsensFrames = NumberedFrames<XsensSource<Items>>;
 
-/// Learns the clock from the sample counter. The shape of each sample tells later whether it makes
-/// a row.
+/// Learns the clock from the sample counter. The shape of each sample later decides whether the
+/// sample gives a row.
 template <class Items>
 class XsensListener final : public DeviceListener {
  public:
@@ -62,7 +62,7 @@ class XsensListener final : public DeviceListener {
   FrameKeys keys_;
 };
 
-/// Rows of poses: the poser finds skeleton and unit in the first pose.
+/// Makes rows of poses. The poser finds the skeleton and the unit of length in the first pose.
 class XsensPoseRows final : public NumberedRows<XsensSource<XsensPose>, ClipFrames> {
  public:
   XsensPoseRows(const DeviceRequest& request, std::shared_ptr<const LearnedDevice> learned)
@@ -78,7 +78,7 @@ class XsensPoseRows final : public NumberedRows<XsensSource<XsensPose>, ClipFram
   XsensPoser poser_;
 };
 
-/// Rows of trackers. The header is known with the first sample.
+/// Makes rows of trackers. The header is known after the first sample.
 class XsensTrackerRows final : public NumberedRows<XsensSource<XsensTrackers>, ImuSamples> {
  public:
   XsensTrackerRows(const DeviceRequest& request, std::shared_ptr<const LearnedDevice> learned)
