@@ -8,7 +8,7 @@ namespace kinalign {
 
 namespace {
 
-/// Its columns are the file's axes in ours.
+/// A matrix whose columns are the file's axes in kinalign's axes.
 Eigen::Matrix3d matrix_of(const Axes& axes) {
   Eigen::Matrix3d matrix;
   for (Eigen::Index i = 0; i < 3; ++i) {
@@ -21,12 +21,12 @@ Eigen::Matrix3d matrix_of(const Axes& axes) {
 }  // namespace
 
 int determinant(const Axes& axes) {
-  // The elements are whole numbers, so rounding gives the exact value.
+  // The elements of the matrix are whole numbers, so rounding gives the exact determinant.
   return static_cast<int>(std::lround(matrix_of(axes).determinant()));
 }
 
 Axes axes_of(const Axes& of_format, const StreamOptions& options) {
-  // The user's statement has priority.
+  // The user's option has priority over the format.
   if (options.up == "y") return y_up;
   if (options.up == "z") return z_up;
   return of_format;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Splits one line of a table into numbers, without an allocation.
+// Splits one line of a table into numbers without allocating memory.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -12,36 +12,36 @@
 
 namespace kinalign {
 
-/// Value of `delimiter` under which any run of blanks and tabs delimits, also in front of the first
-/// cell.
+/// A special delimiter: cells are separated by any number of blanks and tabs, which may also stand
+/// in front of the first cell.
 constexpr char runs_of_blanks = '\0';
 
-/// Tells the parser where to put the content of a column. A column with neither number may hold
-/// anything.
+/// Determines where the parser stores the content of a column. A column that is not stored may
+/// contain anything.
 struct ColumnUse {
-  int slot = -1;  // the column's number goes to values[slot]; -1: nowhere
-  int text = -1;  // the column's text goes to texts[text]; -1: nowhere
+  int slot = -1;  // index in RowParser::values; -1: not read as a number
+  int text = -1;  // index in RowParser::texts; -1: not read as a text
 };
 
 /// Reads rows that all have the same columns. Blanks around a cell are dropped, unless the blank is
-/// the delimiter. A cell in double quotes is the text between the quotes. Delimiters behind the
-/// last column are tolerated.
-/// The columns are known before the first row, so a row needs no look-up and no allocation.
+/// the delimiter. If a cell is in double quotes, the text between the quotes is used. Delimiters
+/// after the last column are accepted. The columns are known before the first row, so that a row
+/// needs no search and no allocation.
 class RowParser {
  public:
   RowParser() = default;
   RowParser(char delimiter, std::vector<ColumnUse> columns);
 
-  /// Fills `values`, `missing` and `texts`. An empty cell and "nan" are missing. Fails, without a
-  /// place, if the number of cells differs from the number of columns, or if a wanted cell holds no
-  /// number below 1e15.
+  /// Fills `values`, `missing` and `texts`. An empty cell and "nan" count as missing. Fails if the
+  /// number of cells differs from the number of columns, or if a cell that is read as a number
+  /// contains no number below 1e15. The caller adds file and line to the error.
   Result<void> read(std::string_view line);
 
   std::size_t columns() const { return columns_.size(); }
 
   std::vector<double> values;           // [slots] 0 where missing
-  std::vector<std::uint8_t> missing;    // [slots] 1: the cell was empty or "nan"
-  std::vector<std::string_view> texts;  // views into the line read last
+  std::vector<std::uint8_t> missing;    // [slots] 1: the cell is empty or "nan"
+  std::vector<std::string_view> texts;  // views into the last line
   bool any_missing = false;
 
  private:
@@ -61,16 +61,17 @@ class RowParser {
   std::vector<ColumnUse> columns_;
 };
 
-/// The cells of a line, trimmed and without quotes. Meant for header lines: it allocates.
+/// The cells of a line, without blanks around them and without quotes. It allocates memory, so it
+/// is for header lines.
 std::vector<std::string> split_cells(std::string_view line, char delimiter);
 
-/// `text` without blanks, tabs and line ends at both ends.
+/// `text` without blanks, tabs and line ends at its beginning and end.
 std::string_view trimmed(std::string_view text);
 
-/// True if the cell says that there is no value: empty, or "nan" in any case.
+/// True if the cell is empty or "nan" in upper or lower case.
 bool says_missing(std::string_view cell);
 
-/// True if the name can stand in a cell of tab-separated text: not empty, no tab, no line end.
+/// True if the name can be a cell of tab-separated text: not empty, without tabs and line ends.
 bool fits_a_cell(std::string_view name);
 
 }  // namespace kinalign

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Results of the first pass over a file of a skeleton whose frames have a fixed time step.
+// Results of the first pass over a file with a skeleton and a fixed time between frames.
 #pragma once
 
 #include "kinalign/take/recording.h"
 
 namespace kinalign {
 
-/// `survey` is computed from the step, so the frames are not read.
+/// `survey` follows from the time between frames, so the frames themselves are not read.
 struct ClipSurvey {
   Skeleton skeleton;
   StampSurvey survey;

@@ -8,7 +8,7 @@
 namespace kinalign {
 
 std::vector<std::string> distinct_names(const std::vector<std::string>& names) {
-  // All written names are taken from the start, so that a made name never equals one of them.
+  // All given names count as taken from the start, so that a new name never equals one of them.
   std::set<std::string> taken(names.begin(), names.end());
   std::map<std::string_view, int> times;
   std::vector<std::string> out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the names of joints or markers unique, because a take can't hold a name twice.
+// Makes the names of joints or markers unique, because a take can't contain a name twice.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace kinalign {
 
-/// A repeated name gets #2, #3, ..., the first number that gives no other name of the list.
+/// Appends #2, #3, ... to a repeated name: the first number that gives a new name.
 std::vector<std::string> distinct_names(const std::vector<std::string>& names);
 
 }  // namespace kinalign

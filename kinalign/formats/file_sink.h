@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Target to which a format's writer hands the bytes of a file, in the file's order.
-// The sink may keep, hash or write the bytes; they are valid during the call only.
+// A function that receives the bytes of a file from a format's writer, in the file's order. It may
+// store, hash or write the bytes. They are valid during the call only.
 #pragma once
 
 #include "kinalign/core/error.h"

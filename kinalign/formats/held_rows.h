@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps rows until their stamps are settled (formats/row_stamps.h).
+// Keeps rows until their stamps are final (formats/row_stamps.h).
 #pragma once
 
 #include "kinalign/formats/row_stamps.h"
@@ -7,15 +7,16 @@
 
 namespace kinalign {
 
-/// The stamps of the first rows may depend on later rows. Rows are held until then, at most as long
-/// as the stamps are not settled.
+/// The stamps of the first rows may depend on later rows. This class keeps the first rows until
+/// their stamps are final.
 template <class Frames>
 class HeldRows {
  public:
-  /// The place for the next row: `out` once the stamps are settled, before that the rows kept here.
+  /// The rows to append to: `out` if the stamps are final, else the rows that are kept here.
   Frames& target(const RowStamps& stamps, Frames& out) { return stamps.settled() ? out : held_; }
 
-  /// Call after each row and at the end. Moves the kept rows to `out` once their stamps are final.
+  /// Call this after each row and at the end. If the stamps are final, it moves the kept rows to
+  /// `out`.
   void release(const RowStamps& stamps, Frames& out) {
     if (held_.stamps.empty() || !stamps.settled()) return;
     stamps.restamp(held_.stamps);

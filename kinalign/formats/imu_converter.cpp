@@ -15,20 +15,21 @@ constexpr double zeros[4] = {};
 
 }  // namespace
 
-/// The orientation `q` in our world, from the file's quaternion `raw` w,x,y,z. Counts odd lengths;
-/// false if the length is zero, so that no direction is left.
+/// Sets `q` to the orientation in kinalign's world, from the file's quaternion `raw` w,x,y,z.
+/// Counts quaternions whose length is not 1. Returns false if the length is zero, because there is
+/// then no direction.
 bool ImuConverter::turn(const double* raw, Quat& q) {
   constexpr double smallest = 1e-6;
   constexpr double unit_within = 0.02;
   q = Quat(raw[0], raw[1], raw[2], raw[3]);
   const double length = q.norm();
-  // Without a length there is no direction, so the sample can't be repaired.
+  // A quaternion of length zero has no direction, so the sample can't be repaired.
   if (!(length > smallest)) {
     ++zero_;
     return false;
   }
   not_unit_ += std::abs(length - 1.0) > unit_within ? 1 : 0;
-  // The turn of the world comes first; the sensor's own axes stay as they are.
+  // The rotation of the world is applied from the left. The sensor's own axes stay as they are.
   q = (turn_ * Quat(q.coeffs() / length)).normalized();
   return true;
 }
@@ -38,7 +39,7 @@ void ImuConverter::append(const RawImuSample& sample, ImuSamples& out) {
   bool valid = sample.valid;
   if (sample.orientation != nullptr) {
     Quat q(1, 0, 0, 0);
-    // An invalid sample holds zeros, whatever was read.
+    // An invalid sample contains zeros, whatever the file says.
     valid = valid && turn(sample.orientation, q);
     const double parts[] = {q.w(), q.x(), q.y(), q.z()};
     append_scaled(valid ? parts : zeros, 4, 1.0, out.orientation);

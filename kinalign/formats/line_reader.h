@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part that the readers of text tables share: lines, the stamps of rows, and rows that are kept
-// until their stamps are final.
+// The common part of the readers of text tables: it splits lines, stamps rows, and keeps rows until
+// their stamps are final.
 #pragma once
 
 #include "kinalign/formats/held_rows.h"
@@ -15,7 +15,7 @@
 
 namespace kinalign {
 
-/// Base is PointReader or ImuReader. A derived class reads one line at a time and sets header_
+/// Base is PointReader or ImuReader. A derived class reads one line at a time, and sets header_
 /// before the first row.
 template <class Base>
 class LineReader : public Base {
@@ -23,7 +23,7 @@ class LineReader : public Base {
   using Header = typename Base::Header;
   using Frames = typename Base::Frames;
 
-  /// `head` is what a file without a header lacks, for the message.
+  /// `head`: a description of the header, for the error about a file without it.
   LineReader(std::string_view file, std::string head, RowStamps stamps)
       : lines_(file), stamps_(std::move(stamps)), head_(std::move(head)) {}
 
@@ -35,7 +35,7 @@ class LineReader : public Base {
     const auto use = [&](std::string_view line) { return read(line, out); };
     KA_TRY(header_ ? lines_.finish(use, this->findings) : lines_.finish_head(use, this->findings));
     if (!header_) return Failure(lines_.error(head_, "the end of the file"));
-    // Rows may be held until it is known whether the stamps move.
+    // At the end of the file the stamps become final, and all kept rows are passed on.
     stamps_.settle();
     this->counted = stamps_.counted();
     held_.release(stamps_, out);
@@ -47,7 +47,7 @@ class LineReader : public Base {
 
  protected:
   virtual Result<void> read(std::string_view line, Frames& out) = 0;
-  /// Called at the end of the file, to add findings.
+  /// Adds findings. It is called at the end of the file.
   virtual Result<void> report() = 0;
 
   NamedLines lines_;

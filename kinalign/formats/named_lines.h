@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Splits a text file into lines and puts its name and the line number into error messages.
+// Splits a text file into lines. Adds the file's name and the line number to errors.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -12,7 +12,7 @@
 
 namespace kinalign {
 
-/// Finding: the file ends in the middle of its last line, and that line could be read.
+/// The finding for a last line without a line end that could be read nevertheless.
 inline Finding unended_finding(const std::string& file, std::int64_t line) {
   return {Severity::note,
           Error{file, line, "a line end after the last value", "the end of the file"},
@@ -23,16 +23,16 @@ class NamedLines {
  public:
   explicit NamedLines(std::string_view file) : file_(file) {}
 
-  /// Calls `use(line)`, which returns Result<void>, for each completed line. An error without a
-  /// place gets this file and line. A byte order mark in front of the first line is dropped.
+  /// Calls `use(line)`, which returns Result<void>, for each completed line. Adds this file and
+  /// line to an error without a file. A byte order mark at the beginning of the file is dropped.
   template <class Use>
   Result<void> feed(std::string_view piece, Use&& use) {
     return placed(lines_.feed(piece, [&](std::string_view line) { return use(unmarked(line)); }));
   }
 
-  /// Call at the end of the file. A last line without a line end may be cut off. If that line can't
-  /// be used, `incomplete` gets a warning and the result is still good. If it can be used, a note
-  /// says that its last value may be incomplete.
+  /// Call this at the end of the file. A last line without a line end may be incomplete. If that
+  /// line can't be used, a warning is added to `incomplete`, and the call succeeds. If it can be
+  /// used, a note says that its last value may be incomplete.
   template <class Use>
   Result<void> finish(Use&& use, Findings& incomplete) {
     auto last = finish_head(std::forward<Use>(use), incomplete);
@@ -43,18 +43,18 @@ class NamedLines {
     return {};
   }
 
-  /// Like finish(), but for a file that ended within its header, without which nothing can be read:
-  /// an incomplete last line is a failure.
+  /// Like finish(), but for a file that ends within its header. An incomplete last line is then an
+  /// error, because the file can't be read without its header.
   template <class Use>
   Result<void> finish_head(Use&& use, Findings& incomplete) {
-    // Asked before finish(), which uses the line up.
+    // This is tested before finish(), which uses the last line.
     const bool unended = lines_.within_line();
     KA_TRY(placed(lines_.finish([&](std::string_view line) { return use(unmarked(line)); })));
     if (unended) incomplete.push_back(unended_finding(file_, lines_.number()));
     return {};
   }
 
-  /// An error at the line that was read last.
+  /// An error at the last line.
   Error error(std::string expected, std::string found) const {
     if (found.empty()) found = "nothing";
     return {file_, lines_.number(), std::move(expected), std::move(found)};

@@ -24,7 +24,7 @@ void append_points(const PointUnits& units, const double* file, std::span<const 
   const double* from_z = file + std::abs(z) - 1;
   double* to = out.positions.data() + first;
   for (std::size_t j = 0; j < states.size(); ++j, to += 3) {
-    // resize() has filled a missing joint with zeros.
+    // For a missing joint, resize() has set zeros already.
     if (states[j] == Tracking::missing) continue;
     to[0] = from_x[3 * j] * x_metres;
     to[1] = from_y[3 * j] * y_metres;

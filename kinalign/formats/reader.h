@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The interface of every format's reader: it takes a file in pieces, cut anywhere, and yields rows.
+// The interface of all readers of formats. A reader takes a file in pieces, which may be cut
+// anywhere, and returns rows.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -23,9 +24,9 @@ struct ImuHeader {
   ImuContent content;
 };
 
-/// One pass over one file. The memory used depends on the bytes fed, never on numbers that the file
-/// states. Rows come out in our units and axes: metres, radians, m/s2, right-handed, y up. Stamps
-/// lie inside +-4e18 ns, so that differences can't overflow.
+/// One pass over one file. The memory depends on the bytes that arrive, never on numbers in the
+/// file. Rows are in kinalign's units and axes: metres, radians, m/s2, right-handed, y up. Stamps
+/// are within +-4e18 ns, so that differences can't overflow.
 template <class HeaderType, class FramesType>
 class Reader {
  public:
@@ -34,19 +35,19 @@ class Reader {
 
   virtual ~Reader() = default;
 
-  /// Takes the next piece and appends the rows that it completes to `out`. After a failure the
-  /// reader may not be used again.
+  /// Takes the next piece, and appends the rows that it completes to `out`. After a failure the
+  /// reader must not be used again.
   virtual Result<void> feed(std::string_view piece, Frames& out) = 0;
 
-  /// Call at the end of the file: appends the remaining rows. Fails if the file ends within its
-  /// header.
+  /// Call this at the end of the file. It appends the remaining rows. Fails if the file ends within
+  /// its header.
   virtual Result<void> finish(Frames& out) = 0;
 
-  /// The header before the first row; nullptr until it has been read.
+  /// The header of the rows; nullptr until it was read.
   virtual const Header* header() const = 0;
 
-  /// True: stamps come from a rate, because the file has no time column or one that never moves.
-  /// Known after finish().
+  /// True if the stamps come from a rate, because the file has no time column or its time never
+  /// changes. The value is valid after finish().
   bool counted = false;
 
   /// Faults that did not stop the reading; complete after finish(). A repeated fault is one finding

@@ -12,10 +12,10 @@ namespace kinalign {
 namespace {
 
 constexpr std::int64_t second_ns = 1'000'000'000;
-constexpr int most_digits = 18;           // an int64 holds them
-constexpr int most_fraction_digits = 10;  // a tenth of a nanosecond, where the unit is a second
+constexpr int most_digits = 18;           // digits that an int64 can contain
+constexpr int most_fraction_digits = 10;  // down to 0.1 ns if the unit is a second
 
-/// "12.50" as whole 12, fraction 5, scale 10.
+/// A decimal number: "12.50" is whole 12, fraction 5, scale 10.
 struct Decimal {
   bool minus = false;
   std::int64_t whole = 0;
@@ -24,13 +24,13 @@ struct Decimal {
 
 bool is_digit(char c) { return static_cast<unsigned>(c - '0') < 10; }
 
-/// Reads plain decimals only; false if the text has an exponent or is no number.
+/// Reads plain decimals. Returns false if the text has an exponent or is not a number.
 bool parse_decimal(std::string_view text, Decimal& out) {
   std::size_t i = 0;
   if (i < text.size() && (text[i] == '-' || text[i] == '+')) out.minus = text[i++] == '-';
   const std::size_t first = i;
   for (; i < text.size() && is_digit(text[i]); ++i) {
-    // More digits than an int64 holds: through_double() may read the number.
+    // The number has too many digits for an int64. through_double() may read the number.
     if (i - first >= most_digits + 1 || out.whole > INT64_MAX / 10 - 1) return false;
     out.whole = out.whole * 10 + (text[i] - '0');
   }
@@ -38,7 +38,7 @@ bool parse_decimal(std::string_view text, Decimal& out) {
   if (i < text.size() && text[i] == '.') {
     const std::size_t point = i++;
     for (; i < text.size() && is_digit(text[i]); ++i, ++digits) {
-      // Digits beyond a tenth of a nanosecond are only counted.
+      // Digits after a tenth of a nanosecond are ignored.
       if (i - point > most_fraction_digits) continue;
       out.fraction = out.fraction * 10 + static_cast<unsigned>(text[i] - '0');
       out.scale *= 10;
@@ -47,10 +47,10 @@ bool parse_decimal(std::string_view text, Decimal& out) {
   return digits > 0 && i == text.size();
 }
 
-/// Reads a stamp that is no plain decimal: one with an exponent, or with a decimal comma.
+/// Reads a stamp with an exponent or with a decimal comma.
 std::optional<std::int64_t> through_double(std::string_view text, TimeScale scale) {
   std::string point(text.substr(0, 64));
-  std::replace(point.begin(), point.end(), ',', '.');  // a French locale's 1,594038E+12
+  std::replace(point.begin(), point.end(), ',', '.');  // French programs write 1,594038E+12
   double value = 0.0;
   if (!parse_number(point, value)) return std::nullopt;
   const double ns =
@@ -66,13 +66,13 @@ std::optional<std::int64_t> parse_stamp(std::string_view text, TimeScale scale) 
   Decimal decimal;
   if (!parse_decimal(text, decimal)) return through_double(text, scale);
   const std::int64_t whole = decimal.minus ? -decimal.whole : decimal.whole;
-  // The limit in the column's unit, so that the product below can't overflow.
+  // The limit is in the column's unit, so that the product below can't overflow.
   const std::int64_t largest = largest_stamp_ns / scale.unit_ns;
   std::int64_t epoch = 0, units = 0;
   const bool overflow = __builtin_mul_overflow(scale.epoch_s, second_ns / scale.unit_ns, &epoch) ||
                         __builtin_sub_overflow(whole, epoch, &units);
   if (overflow || units > largest || units < -largest) return std::nullopt;
-  // The product is below 1e10 * 1e9 + 5e9 and fits into an unsigned 64-bit integer.
+  // The product is below 1e10 * 1e9 + 5e9, which fits into an unsigned 64-bit integer.
   const std::uint64_t part =
       (decimal.fraction * static_cast<std::uint64_t>(scale.unit_ns) + decimal.scale / 2) /
       decimal.scale;
@@ -94,7 +94,7 @@ std::string seconds_text(std::int64_t ns) {
 
 std::int64_t stamp_at_rate(std::uint64_t index, double rate_hz) {
   constexpr double largest =
-      4.5e18;  // a stamp this large is refused, but can be added to another without overflow
+      4.5e18;  // above the limit of stamps, but a sum with another stamp can't overflow
   return std::llround(std::min(static_cast<double>(index) * 1e9 / rate_hz, largest));
 }
 
@@ -106,7 +106,7 @@ Result<Time> RowStamps::next(std::int64_t ns) {
     first_ = column_ ? ns : 0;
     if (start_ns_) shift_ = *start_ns_ - first_;
   } else if (!settled_) {
-    // A first stamp that repeats leaves the question open, for at most `patience` rows.
+    // If the first stamp repeats, the decision waits for at most `patience` rows.
     stuck_ = ns == first_ && rows_ + 1 >= patience;
     settled_ = ns != first_ || stuck_;
   }
@@ -121,14 +121,14 @@ Result<Time> RowStamps::next(std::int64_t ns) {
 }
 
 void RowStamps::settle() {
-  // Fewer rows than this may share a stamp by chance.
+  // Fewer rows may have the same stamp by chance.
   constexpr std::uint64_t least = 3;
   if (!settled_) stuck_ = rows_ >= least;
   settled_ = true;
 }
 
 void RowStamps::restamp(std::vector<Time>& held) const {
-  // Without a rate the rows keep the stamp that never moved.
+  // Without a rate, the rows keep their equal stamps.
   if (!stuck_ || rate_hz_ <= 0.0) return;
   for (std::size_t i = 0; i < held.size(); ++i) {
     held[i] = utc_time(first_ + shift_ + stamp_at_rate(i, rate_hz_));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stamps for the rows of a table: from a time column, exact to the nanosecond, or from a rate.
+// Gives the rows of a table their stamps, from a time column (exact to the nanosecond) or from a
+// rate.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -16,48 +17,50 @@ namespace kinalign {
 
 constexpr std::int64_t largest_stamp_ns = 4'000'000'000'000'000'000;  // see formats/reader.h
 
-/// Unit and zero of a time column.
+/// The unit and the zero of a time column.
 struct TimeScale {
   std::int64_t unit_ns = 1;
-  std::int64_t epoch_s = 0;  // the column's zero, in seconds before 1970: .NET counts from year 1
+  std::int64_t epoch_s = 0;  // zero of the column, in seconds before 1970; .NET counts from year 1
 };
 
 constexpr std::int64_t year_1_s = 62'135'596'800;  // from 0001-01-01 to 1970-01-01
 
-/// "1642700852075.903" at 1 ms -> ns, in integers; a number with an exponent goes through a double.
-/// Empty if `text` is no number or the stamp lies outside +-4e18 ns.
+/// Converts a time in a file to ns, for example "1642700852075.903" in ms. Integers are used,
+/// except for a number with an exponent. The result is empty if `text` is not a number, or if the
+/// stamp is outside +-4e18 ns.
 std::optional<std::int64_t> parse_stamp(std::string_view text, TimeScale scale);
 
-/// ns -> "-12.345": seconds, exact, without zeros at the end. parse_stamp reads the same ns back.
+/// Converts ns to seconds exactly, without zeros at the end: "-12.345". parse_stamp() converts the
+/// text back to the same ns.
 std::string seconds_text(std::int64_t ns);
 
-/// Time of row `index` in ns after row 0, at `rate_hz`.
+/// The time of row `index` after row 0 at the rate `rate_hz`, ns.
 std::int64_t stamp_at_rate(std::uint64_t index, double rate_hz);
 
-/// Gives the rows of one file their stamps, in order. A time column that never moves is found only
-/// after several rows. The caller must keep the rows until settled().
+/// Gives the rows of one file their stamps, in order. Several rows are needed to find that a time
+/// column never changes. The caller must therefore keep the rows until settled().
 class RowStamps {
  public:
-  /// A column counts as stuck after so many rows with the first stamp.
+  /// After so many rows with the first stamp, the time column counts as stuck.
   static constexpr std::uint64_t patience = 32;
 
-  /// `rate_hz` is used if there is no time column or if it is stuck. `start_ns` shifts all stamps
-  /// so that the first row gets it.
+  /// `rate_hz` is used if there is no time column or if it is stuck. If `start_ns` is given, all
+  /// stamps are shifted so that the first row has this stamp.
   RowStamps(bool column, double rate_hz, std::optional<std::int64_t> start_ns);
 
-  /// The stamp of the next row. `ns` is the value of the time column, and ignored without one.
-  /// Fails, without a place, outside +-4e18 ns.
+  /// The stamp of the next row. `ns`: the value of the time column, which is ignored if there is no
+  /// time column. Fails outside +-4e18 ns. The caller adds file and line to the error.
   Result<Time> next(std::int64_t ns);
 
-  /// True once the stamps of the first rows are final.
+  /// True if the stamps of the first rows are final.
   bool settled() const { return settled_; }
-  /// Call at the end of the file: decides on a file with few rows.
+  /// Call this at the end of the file. It decides for a file with few rows.
   void settle();
-  /// Replaces the stamps of the rows that the caller kept, which are the first ones, by their final
-  /// stamps.
+  /// Replaces the stamps of the rows that the caller kept by their final stamps. These are the
+  /// first rows.
   void restamp(std::vector<Time>& held) const;
 
-  /// True if the time column never moved.
+  /// True if the time column never changed.
   bool stuck() const { return stuck_; }
   /// True if the stamps come from the rate.
   bool counted() const { return !column_ || (stuck_ && rate_hz_ > 0.0); }
@@ -72,11 +75,12 @@ class RowStamps {
   bool stuck_ = false;
   std::uint64_t rows_ = 0;
   std::int64_t first_ = 0;  // stamp of the first row, as in the file
-  /// ns added to each stamp of the file, so that the first row gets the start
+  /// The difference between the stamps and those in the file, ns. It moves the first row to
+  /// `start_ns`.
   std::int64_t shift_ = 0;
 };
 
-/// The warning about a time column that never moves.
+/// The warning about a time column that never changes.
 Finding stuck_finding(std::string_view file, const RowStamps& stamps);
 
 }  // namespace kinalign

@@ -33,8 +33,8 @@ bool is_text(std::string_view line) {
 bool looks_like_hdf5(std::string_view head) { return head.starts_with(hdf5_signature); }
 
 bool looks_like_model(std::string_view head) {
-  // The header's length comes first, as a little-endian u64 of at most 16 MB. Bytes 4 to 7 are then
-  // 0, and byte 3 is 0 or 1.
+  // A SafeTensors file begins with the header's length, a little-endian 64-bit number of at most 16
+  // MB. Bytes 4 to 7 are therefore 0, and byte 3 is 0 or 1.
   if (head.size() < 10 || head.substr(8, 2) != "{\"") return false;
   return (head[3] == 0 || head[3] == 1) && head.substr(4, 4) == "\0\0\0\0"sv;
 }
@@ -47,7 +47,7 @@ std::string beginning_of(std::string_view head) {
   }
   head = without_byte_order_mark(head);
   const std::string_view line = head.substr(0, head.find('\n'));
-  // Only the beginning is looked at; the rest may be long.
+  // Only the beginning is examined, because the line may be long.
   return is_text(line.substr(0, 200)) ? "'" + shown(line) + "'" : "bytes that are no plain text";
 }
 

@@ -12,18 +12,18 @@ namespace kinalign {
 
 namespace {
 
-// Times are seconds without an offset.
+// Times are in seconds, and their zero is that of the file.
 constexpr TimeScale sto_seconds{1'000'000'000, 0};
 
-/// Reads a .sto line by line: head up to endheader, names, then rows.
-/// in_head_ is true up to endheader. Then one line of names follows, and header_ is set with it.
+/// Reads a .sto file line by line: the head up to endheader, a line of names, then rows. in_head_
+/// is true up to endheader. The line of names sets header_.
 class StoReader final : public ImuReader {
  public:
   StoReader(const StreamOptions& options, std::string_view file)
       : lines_(file),
         stamps_(true, options.rate_hz, options.start_ns),
         samples_(ImuUnits{axes_of(z_up, options), 1.0, 1.0}),
-        // A quaternion's cell is split by a parser of its own, at commas.
+        // Four numbers with commas between them form one cell. parts_ splits them.
         parts_(',', {{0, -1}, {1, -1}, {2, -1}, {3, -1}}) {}
 
   Result<void> feed(std::string_view piece, ImuSamples& out) override {
@@ -32,7 +32,7 @@ class StoReader final : public ImuReader {
 
   Result<void> finish(ImuSamples& out) override {
     const auto use = [&](std::string_view line) { return read(line, out); };
-    // A file that ends in its head is incomplete, whatever the head holds.
+    // A file that ends within its head is incomplete.
     KA_TRY(header_ ? lines_.finish(use, findings) : lines_.finish_head(use, findings));
     if (!header_) return Failure(lines_.error("the head of a .sto file", "the end of the file"));
     stamps_.settle();
@@ -47,7 +47,7 @@ class StoReader final : public ImuReader {
 
  private:
   Result<void> read(std::string_view line, ImuSamples& out) {
-    // Blank lines may stand anywhere.
+    // Blank lines are ignored everywhere.
     if (trimmed(line).empty()) return {};
     if (header_) return read_row(line, out);
     return in_head_ ? read_head(trimmed(line)) : read_names(split_cells(line, '\t'));
@@ -61,21 +61,21 @@ class StoReader final : public ImuReader {
       if (!quaternions_) return Failure(Error{"", 0, "DataType=Quaternion", shown(type)});
     }
     if (line != "endheader") return {};
-    // Without this key the rows could be anything.
+    // Without this key, the type of the values is unknown.
     if (!quaternions_) return Failure(Error{"", 0, "DataType=Quaternion in the head", "none"});
     in_head_ = false;
     return {};
   }
 
-  /// Reads the line of column names, which makes the header complete.
+  /// Reads the line of column names, which completes the header.
   Result<void> read_names(const std::vector<std::string>& names) {
-    // The first column is the time; each further one is a node.
+    // The first column is the time. Every further column is a node.
     if (names.size() < 2 || names[0] != "time") {
       return Failure(
           Error{"", 0, "time and names of nodes", names.empty() ? "none" : shown(names[0])});
     }
     std::vector<ColumnUse> uses(names.size());
-    // Every cell is kept as text: a cell holds four numbers, which RowParser can't read.
+    // Every cell is read as a text, because RowParser can't read a cell of four numbers.
     for (std::size_t i = 0; i < uses.size(); ++i) uses[i].text = static_cast<int>(i);
     row_ = RowParser('\t', std::move(uses));
     raw_.resize(4 * (names.size() - 1));
@@ -84,14 +84,14 @@ class StoReader final : public ImuReader {
     return {};
   }
 
-  /// Reads a row: its time and the quaternion of each node.
+  /// Reads a row: the time and the quaternion of each node.
   Result<void> read_row(std::string_view line, ImuSamples& out) {
     KA_TRY(row_.read(line));
     const auto ns = parse_stamp(row_.texts[0], sto_seconds);
     if (!ns) return Failure(Error{"", 0, "a time in seconds", shown(row_.texts[0])});
-    // All cells are parsed before the row is passed on, so a fault leaves no half row.
+    // All cells are read before anything is appended, so that a fault leaves no incomplete row.
     for (std::size_t s = 0; s < valid_.size(); ++s) KA_TRY(read_quaternion(row_.texts[s + 1], s));
-    // Rows are held until their stamps are certain.
+    // Rows are kept until their stamps are final.
     ImuSamples& target = held_.target(stamps_, out);
     target.stamps.push_back(KA_TRY(stamps_.next(*ns)));
     for (std::size_t s = 0; s < valid_.size(); ++s) {
@@ -101,9 +101,9 @@ class StoReader final : public ImuReader {
     return {};
   }
 
-  /// Reads one cell "w,x,y,z". A missing cell or part makes the node's sample invalid.
+  /// Reads one cell "w,x,y,z". If the cell or a number is missing, the node's sample is invalid.
   Result<void> read_quaternion(std::string_view cell, std::size_t node) {
-    // A node that lost its sample has an empty cell or "nan".
+    // The cell of a lost sample is empty or "nan".
     valid_[node] = says_missing(cell) ? 0 : 1;
     if (valid_[node] == 0) return {};
     if (auto read = parts_.read(cell); !read) {
@@ -120,7 +120,7 @@ class StoReader final : public ImuReader {
   ImuConverter samples_;
   RowParser row_, parts_;
   bool in_head_ = true, quaternions_ = false;
-  std::vector<double> raw_;          // [S,4] of the current row
+  std::vector<double> raw_;          // [S,4] of the current row, w,x,y,z
   std::vector<std::uint8_t> valid_;  // [S] of the current row
   std::optional<ImuHeader> header_;
 };
@@ -133,7 +133,7 @@ std::unique_ptr<ImuReader> make_opensim_sto_reader(const StreamOptions& options,
 }
 
 bool looks_like_opensim_sto(std::string_view head) {
-  // The head of a .sto of another type lacks the first text.
+  // The head of another type of .sto file does not contain the first text.
   return head.find("DataType=Quaternion") != std::string_view::npos &&
          head.find("endheader") != std::string_view::npos;
 }

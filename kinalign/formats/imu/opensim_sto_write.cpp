@@ -37,10 +37,10 @@ Result<OpensimStoWriter> OpensimStoWriter::begin(const OpensimStoHead& head, Tex
 
 Result<void> OpensimStoWriter::append(const ImuSamples& samples) {
   for (std::size_t t = 0; t < samples.size(); ++t) {
-    // Times count from `zero`, since OpenSim's numbers have no date.
+    // Times count from `zero`, because times in OpenSim have no date.
     out_->text(seconds_text((samples.stamps[t] - zero_).count()));
     for (std::size_t i = t * nodes_; i < (t + 1) * nodes_; ++i) {
-      // Four nan keep the number of cells, so that other nodes stay in place.
+      // Four nan keep the number of cells, so the cells of other nodes stay in their columns.
       if (samples.valid[i] == 0) {
         out_->text("\tnan,nan,nan,nan");
         continue;

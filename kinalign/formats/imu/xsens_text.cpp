@@ -20,9 +20,8 @@ namespace kinalign {
 
 namespace {
 
-/// The columns of one quantity in RowParser::values. Empty: at least one of them is not in the
-/// file.
-/// slots are places in RowParser::values, in the order of the wanted names.
+/// The slots of one quantity's columns in RowParser::values, in the order of the wanted names. The
+/// list is empty if the file lacks one of the columns.
 struct XsensGroup {
   std::vector<std::size_t> slots;
 
@@ -38,8 +37,8 @@ struct XsensColumns {
   XsensGroup counter, quaternion, matrix, euler, acceleration, free_acceleration, angular_velocity;
 };
 
-/// Finds groups of columns by name and gives each column found a slot in RowParser::values.
-/// A group is found only if all of its columns exist. A column may be in several groups.
+/// Finds groups of columns by name, and gives each column a slot in RowParser::values. A group is
+/// found only if all its columns exist. A column may be in several groups.
 class ColumnFinder {
  public:
   explicit ColumnFinder(const std::vector<std::string>& names)
@@ -54,7 +53,7 @@ class ColumnFinder {
     }
     XsensGroup group;
     for (const std::size_t column : columns) {
-      // A column gets one slot, even if two groups use it.
+      // A column gets one slot, even if it is in two groups.
       if (uses_[column].slot < 0) uses_[column].slot = slots_++;
       group.slots.push_back(static_cast<std::size_t>(uses_[column].slot));
     }
@@ -73,7 +72,7 @@ double value(const XsensGroup& group, const RowParser& row, std::size_t i) {
   return row.values[group.slots[i]];
 }
 
-/// The delimiter of the line of column names: tab, comma, semicolon, bar, colon or blank.
+/// The delimiter in the line of column names: tab, comma, semicolon, bar, colon or blank.
 std::optional<char> xsens_delimiter(std::string_view names) {
   for (const char delimiter : {'\t', ',', ';', '|', ':', ' '}) {
     if (names.find(delimiter) != std::string_view::npos) return delimiter;
@@ -92,7 +91,7 @@ XsensColumns find_xsens_columns(const std::vector<std::string>& names) {
   columns.euler = finder.find({"Roll", "Pitch", "Yaw"});
   columns.acceleration = finder.find({"Acc_X", "Acc_Y", "Acc_Z"});
   columns.free_acceleration = finder.find({"FreeAcc_X", "FreeAcc_Y", "FreeAcc_Z"});
-  // Some exports name the axes of the world: east, north, up.
+  // Some exports name the axes of the world: east, north and up.
   if (!columns.free_acceleration.there()) {
     columns.free_acceleration = finder.find({"FreeAcc_E", "FreeAcc_N", "FreeAcc_U"});
   }
@@ -101,23 +100,23 @@ XsensColumns find_xsens_columns(const std::vector<std::string>& names) {
   return columns;
 }
 
-// Each of the following functions gives world_from_sensor of a row, world z up, not normalised. All
-// columns of the group must have values in the row.
+// Each of the following functions returns world_from_sensor for a row, world z up, not normalised.
+// All columns of the group must have values in the row.
 Quat xsens_quaternion(const XsensGroup& group, const RowParser& row) {
   return {value(group, row, 0), value(group, row, 1), value(group, row, 2), value(group, row, 3)};
 }
 
-/// From the columns Mat[row][column].
+/// Reads the rotation matrix in the columns Mat[row][column].
 Quat xsens_from_matrix(const XsensGroup& group, const RowParser& row) {
   Eigen::Matrix3d matrix;
   for (Eigen::Index i = 0; i < 9; ++i) {
     matrix(i / 3, i % 3) = value(group, row, static_cast<std::size_t>(i));
   }
-  // A matrix from text is a rotation up to rounding; the result is normalised later.
+  // The numbers are rounded, so the matrix is nearly a rotation. The result is normalised later.
   return Quat(matrix);
 }
 
-/// From roll, pitch and yaw in degrees: R = Rz Ry Rx.
+/// Reads roll, pitch and yaw in degrees: R = Rz Ry Rx.
 Quat xsens_from_euler(const XsensGroup& group, const RowParser& row) {
   constexpr double degree = std::numbers::pi / 180.0;
   const Eigen::AngleAxisd roll(value(group, row, 0) * degree, Vec3::UnitX());
@@ -126,23 +125,23 @@ Quat xsens_from_euler(const XsensGroup& group, const RowParser& row) {
   return yaw * pitch * roll;
 }
 
-/// "MT_012005D6_009-001_00B421E6.txt" -> "00B421E6". Another name is returned without its
-/// extension.
+/// The id of the device in a file name: "MT_012005D6_009-001_00B421E6.txt" gives "00B421E6". A name
+/// without an id is returned without its extension.
 std::string device_of(std::string_view file) {
   std::string_view name = file_name(file);
   name = name.substr(0, name.rfind('.'));
-  // The device's id has eight digits.
+  // The id of a device has eight digits.
   const std::string_view id = name.size() > 8 ? name.substr(name.size() - 8) : name;
   const bool hexadecimal = id.find_first_not_of("0123456789ABCDEFabcdef") == std::string_view::npos;
   return std::string(hexadecimal ? id : name);
 }
 
-/// Counts rows with quantities that first appear after the rows by which the content was decided.
-/// The header must be known before the first row is passed on, so such a quantity is left out.
+/// Counts rows with quantities that the first rows did not have. The header must be known before
+/// the first row is passed on, so such a quantity is left out.
 class LateQuantities {
  public:
-  /// Call for each row. `here`: the quantities with values in this row; `read`: those that are
-  /// read.
+  /// Call this for each row. `here`: the quantities with values in this row. `read`: the quantities
+  /// in the header.
   void add(const ImuContent& here, const ImuContent& read) {
     const std::array late{here.orientation && !read.orientation,
                           here.acceleration && !read.acceleration,
@@ -151,10 +150,10 @@ class LateQuantities {
     rows_ += late[0] || late[1] || late[2] ? 1 : 0;
   }
 
-  /// Number of rows with at least one such quantity.
+  /// The number of rows with at least one such quantity.
   std::uint64_t rows() const { return rows_; }
 
-  /// "orientation, angular velocity"
+  /// The names of these quantities, for example "orientation, angular velocity".
   std::string names() const {
     constexpr std::array names{"orientation", "acceleration", "angular velocity"};
     std::string out;
@@ -169,8 +168,8 @@ class LateQuantities {
   std::array<bool, 3> is_late_{};
 };
 
-/// Rows wait until the first `patience` of them have shown which quantities the file holds. They
-/// are then passed on in their order.
+/// Reads an export. The first `patience` rows wait, because they show which quantities the file
+/// contains. They are then passed on in their order.
 class XsensReader final : public ImuReader {
  public:
   XsensReader(const StreamOptions& options, std::string_view file, std::string_view node)
@@ -187,9 +186,9 @@ class XsensReader final : public ImuReader {
   Result<void> finish(ImuSamples& out) override {
     const auto use = [&](std::string_view line) { return read(line, out); };
     const bool rows = header_ || !waiting_.empty();
-    // Without a row the file ends within its head.
+    // If the file has no row, it ends within its head.
     KA_TRY(rows ? lines_.finish(use, findings) : lines_.finish_head(use, findings));
-    // A short file is decided at its end.
+    // In a file with few rows, the quantities are decided at its end.
     if (!header_) settle(out);
     if (!header_) return Failure(lines_.error("rows of an Xsens export", "the end of the file"));
     if (packets_.lost() > 0) {
@@ -223,17 +222,17 @@ class XsensReader final : public ImuReader {
 
  private:
   Result<void> read(std::string_view line, ImuSamples& out) {
-    // Comments stand above the names, but are accepted anywhere.
+    // Comments usually stand above the names, but are accepted everywhere.
     if (line.starts_with("//")) return read_comment(line);
     if (trimmed(line).empty()) return {};
     return named_ ? read_row(line, out) : read_names(line);
   }
 
-  /// Takes the rate from the comment "Update Rate: ...", unless the user states one.
+  /// Reads the rate from the comment "Update Rate: ...", unless the user gave a rate.
   Result<void> read_comment(std::string_view line) {
     constexpr std::string_view key = "Update Rate:";
     const auto at = line.find(key);
-    // The user's rate has priority over the file's.
+    // The user's rate has priority over the rate in the file.
     if (at == std::string_view::npos || options_.rate_hz > 0.0) return {};
     std::string_view text = trimmed(line.substr(at + key.size()));
     if (text.ends_with("Hz")) text.remove_suffix(2);
@@ -245,12 +244,12 @@ class XsensReader final : public ImuReader {
   Result<void> read_names(std::string_view line) {
     const auto delimiter = xsens_delimiter(trimmed(line));
     if (!delimiter) return Failure(Error{"", 0, "names of columns", shown(line)});
-    // The names decide about all columns; their order is free.
+    // The names determine the meaning of all columns, whose order is free.
     columns_ = find_xsens_columns(split_cells(line, *delimiter));
     if (!columns_.counter.there()) {
       return Failure(Error{"", 0, "a column PacketCounter", "no such column"});
     }
-    // Stamps are counts divided by the rate.
+    // A rate is needed, because a stamp is the packet counter divided by the rate.
     if (rate_hz_ <= 0.0) {
       return Failure(Error{"", 0, "a line // Update Rate: ... above, or rate_hz", "none"});
     }
@@ -259,14 +258,14 @@ class XsensReader final : public ImuReader {
     return {};
   }
 
-  /// Reads a row. The first rows are kept until the file's quantities are decided.
+  /// Reads a row. The first rows are kept until the quantities are decided.
   Result<void> read_row(std::string_view line, ImuSamples& out) {
     KA_TRY(row_.read(line));
-    // Without a counter a row has no stamp.
+    // Without a packet counter, a row has no stamp.
     const bool packet = columns_.counter.whole(row_);
     if (!packet) return Failure(Error{"", 0, "a whole number as PacketCounter", "an empty cell"});
     const ImuContent here = content_of_row();
-    // No quantity has been measured yet.
+    // Rows before the first measurement are ignored.
     const bool is_any = here.orientation || here.acceleration || here.angular_velocity;
     if (!header_ && waiting_.empty() && !is_any) return {};
     const auto count = KA_TRY(packets_.next(row_.values[columns_.counter.slots[0]]));
@@ -277,29 +276,30 @@ class XsensReader final : public ImuReader {
       if (waiting_.size() == patience) settle(out);
       return {};
     }
-    // A quantity that the decision left out is counted for a finding.
+    // Quantities that the header does not contain are counted for a finding.
     late_.add(here, header_->content);
     append_sample(stamp, out);
     return {};
   }
 
-  /// The quantities with complete values in this row; a column of the file may be empty here.
+  /// The quantities with complete values in this row. A column may be empty in some rows.
   ImuContent content_of_row() const {
     ImuContent here;
-    // Any of the three forms is enough.
+    // One of the three forms of orientation is enough.
     here.orientation = columns_.quaternion.whole(row_) || columns_.matrix.whole(row_) ||
                        columns_.euler.whole(row_);
     here.gravity = columns_.acceleration.whole(row_);
-    // An acceleration without gravity needs the orientation, because it is in world space.
+    // An acceleration without gravity is in world space, so the orientation is needed to convert
+    // it.
     here.acceleration =
         here.gravity || (here.orientation && columns_.free_acceleration.whole(row_));
     here.angular_velocity = columns_.angular_velocity.whole(row_);
     return here;
   }
 
-  /// Counts, over the rows kept, how many rows have each quantity.
+  /// Counts how many of the kept rows have each quantity.
   void see(const ImuContent& here) {
-    // The three forms are counted apart, because a file may have several columns of which some are
+    // The three forms of orientation are counted separately, because some of their columns may be
     // empty.
     for (std::size_t k = 0; k < turns_.size(); ++k) {
       turns_[k].rows += turns_[k].group->whole(row_) ? 1 : 0;
@@ -309,22 +309,22 @@ class XsensReader final : public ImuReader {
     seen_.angular_velocity |= here.angular_velocity;
   }
 
-  /// Decides the file's quantities and appends the rows kept. If the file has an orientation or
-  /// acceleration in several forms, the form that most rows have is read.
+  /// Decides which quantities the file has, and appends the kept rows. If the file has several
+  /// forms of orientation or acceleration, the form that most rows have is read.
   void settle(ImuSamples& out) {
     if (waiting_.empty()) return;
-    // Equal counts: the first form wins, which is the quaternion.
+    // If the counts are equal, the first form is used, which is the quaternion.
     const auto best = std::max_element(
         turns_.begin(), turns_.end(),
         [](const Orientation& a, const Orientation& b) { return a.rows < b.rows; });
     orientation_ = best->group;
     seen_.orientation = best->rows > 0;
     seen_.acceleration = with_gravity_ + free_ > 0;
-    // With as many rows of both, the acceleration with gravity is read: nothing was computed from
-    // it.
+    // If both accelerations have equally many rows, the one with gravity is read, because it is a
+    // direct measurement.
     seen_.gravity = with_gravity_ >= free_;
     header_ = ImuHeader{{node_}, seen_};
-    // The kept rows are parsed numbers; each becomes the current row again.
+    // The kept rows contain parsed numbers. Each row becomes the current row again.
     for (Waiting& row : waiting_) {
       row_.values = std::move(row.values);
       row_.missing = std::move(row.missing);
@@ -333,11 +333,12 @@ class XsensReader final : public ImuReader {
     waiting_.clear();
   }
 
-  /// The stamp of packet `count`: by the rate, from packet 0 or, with start_ns, from the first row.
+  /// The stamp of packet `count`. The rate gives the time from packet 0 or, with start_ns, from the
+  /// first row.
   Result<Time> stamp_of(std::int64_t count) {
-    // Without start_ns the counter itself is the time axis, which all sensors of a recording share.
+    // Without start_ns, time 0 is counter 0, which is the same for all sensors of a recording.
     if (!first_count_) first_count_ = count;
-    // A packet before the first one gives a negative number.
+    // A packet before the first one has a negative number.
     const std::int64_t packets = options_.start_ns ? count - *first_count_ : count;
     const std::int64_t since =
         stamp_at_rate(static_cast<std::uint64_t>(std::abs(packets)), rate_hz_);
@@ -346,7 +347,8 @@ class XsensReader final : public ImuReader {
     return Failure(Error{"", 0, "a stamp inside +-4e18 ns", std::to_string(count) + " packets"});
   }
 
-  /// Converts the current row to a sample. It is invalid if one of the file's quantities is absent.
+  /// Converts the current row to a sample. The sample is invalid if a quantity of the header is
+  /// absent.
   void append_sample(Time stamp, ImuSamples& out) {
     const ImuContent& content = header_->content;
     const XsensGroup& force = content.gravity ? columns_.acceleration : columns_.free_acceleration;
@@ -356,14 +358,14 @@ class XsensReader final : public ImuReader {
     if (content.orientation) {
       sample.orientation = orientation.data();
       sample.valid = orientation_->whole(row_);
-      // An absent orientation leaves the identity, which into_sensor() may use.
+      // If the orientation is absent, it stays the identity, which into_sensor() can use.
       if (sample.valid) put_quat(orientation, 0, quaternion());
     }
     if (content.acceleration) {
       sample.acceleration = acceleration.data();
       sample.valid = sample.valid && force.whole(row_);
       copy(force, acceleration);
-      // The converter wants every vector in the sensor's own space.
+      // The converter expects every vector in sensor space.
       if (!content.gravity) into_sensor(orientation, acceleration);
     }
     if (content.angular_velocity) {
@@ -385,10 +387,10 @@ class XsensReader final : public ImuReader {
     for (std::size_t i = 0; i < 3; ++i) to[i] = row_.values[group.slots[i]];
   }
 
-  /// Turns a FreeAcc vector, which is in world space, into sensor space.
+  /// Rotates a vector of FreeAcc from world space to sensor space.
   static void into_sensor(const std::array<double, 4>& orientation, std::array<double, 3>& vector) {
     const Quat q = quat(orientation, 0);
-    if (q.norm() < 1e-6) return;  // such a quaternion makes the sample invalid
+    if (q.norm() < 1e-6) return;  // the converter makes such a sample invalid
     const Vec3 world(vector[0], vector[1], vector[2]);
     const Vec3 sensor = q.normalized().conjugate() * world;
     std::copy_n(sensor.data(), 3, vector.begin());
@@ -401,25 +403,25 @@ class XsensReader final : public ImuReader {
   ImuConverter samples_;
   bool named_ = false;
   XsensColumns columns_;
-  const XsensGroup* orientation_ = nullptr;  // points into columns_
+  const XsensGroup* orientation_ = nullptr;  // the chosen group in columns_
   RowParser row_;
   PacketCount packets_;
   std::optional<std::int64_t> first_count_;
   std::optional<ImuHeader> header_;
 
-  /// A row that was read before the file's quantities were decided.
-  /// The stamp is kept too, because the counter has moved on.
+  /// A row that was read before the quantities were decided. Its stamp is kept, too, because the
+  /// counter has advanced since.
   struct Waiting {
     Time stamp;
     std::vector<double> values;
     std::vector<std::uint8_t> missing;
   };
-  static constexpr std::size_t patience = 32;  // rows until the quantities are decided
+  static constexpr std::size_t patience = 32;  // number of rows until the quantities are decided
   std::vector<Waiting> waiting_;
   /// One form of the orientation.
   struct Orientation {
     const XsensGroup* group;
-    std::size_t rows = 0;  // number of kept rows that have it
+    std::size_t rows = 0;  // number of kept rows with this form
   };
   std::array<Orientation, 3> turns_{
       {{&columns_.quaternion}, {&columns_.matrix}, {&columns_.euler}}};
@@ -436,7 +438,7 @@ std::unique_ptr<ImuReader> make_xsens_text_reader(const StreamOptions& options,
 }
 
 bool looks_like_xsens_text(std::string_view head) {
-  // 40 lines are more than the comments of an export.
+  // An export has fewer than 40 lines of comments.
   for (std::size_t line = 0; line < 40 && !head.empty(); ++line) {
     const auto end = head.find('\n');
     const std::string_view text = head.substr(0, end);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads Xsens MT Manager's text export, one file for each sensor. Layout: docs/formats/imu.md.
+// Reads text exports of Xsens MT Manager, one file per sensor. Layout: docs/formats/imu.md.
 #pragma once
 
 #include "kinalign/formats/reader.h"
@@ -10,14 +10,16 @@
 
 namespace kinalign {
 
-/// Finds columns by name; the delimiter is tab , ; | : or blank. Orientation comes from Quat_q*,
-/// Mat[*][*] or Roll/Pitch/Yaw, whichever most of the first 32 rows have. Acceleration comes from
-/// Acc_*, with gravity, or from FreeAcc_*, without gravity, which is turned into sensor space. The
-/// world (z up) becomes y up unless `up` says y. A stamp is PacketCounter / Update Rate, with the
-/// counter's wraps undone, so the sensors of one recording share a time axis. Lost packets are
-/// gaps. rate_hz replaces the file's rate; start_ns is the stamp of the first row. The node's name
-/// is `node`. If that is empty, it is the device's id: the last eight hexadecimal digits of the
-/// file name.
+/// Reads the export of one sensor. Columns are found by name; the delimiter is tab , ; | : or
+/// blank.
+/// Orientation comes from Quat_q*, Mat[*][*] or Roll/Pitch/Yaw: the form that most of the first 32
+/// rows have. Acceleration comes from Acc_* (with gravity) or from FreeAcc_* (without gravity),
+/// which is rotated to sensor space. The world (z up) becomes y up unless the option `up` is y.
+/// A stamp is PacketCounter / Update Rate, where wraps of the counter are undone. The sensors of
+/// one recording therefore share a time axis. Lost packets leave gaps. The option rate_hz replaces
+/// the file's rate, and start_ns is the stamp of the first row.
+/// The node's name is `node`. If `node` is empty, the name is the device's id: the last eight
+/// hexadecimal digits of the file name.
 std::unique_ptr<ImuReader> make_xsens_text_reader(const StreamOptions& options,
                                                   std::string_view file, std::string_view node);
 

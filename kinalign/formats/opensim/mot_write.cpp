@@ -20,7 +20,7 @@ MotWriter::MotWriter(const MotHead& head, TextOut& out)
     : out_(&out), channels_(head.skeleton), frames_(head.frames), zero_(head.zero) {
   constexpr std::array<const char*, 6> ends{"_tx", "_ty", "_tz", "_rx", "_ry", "_rz"};
   constexpr double metres = 0.01;  // the channels are in centimetres and degrees
-  // Frames and step do not matter here, only the channels.
+  // Only the channels matter here; the number of frames and the frame time do not.
   const BvhHierarchy hierarchy = channels_.hierarchy(0, 1.0);
   for (std::size_t j = 0; j < hierarchy.names.size(); ++j) {
     for (const Channel channel : hierarchy.channels[j]) {
@@ -33,13 +33,13 @@ MotWriter::MotWriter(const MotHead& head, TextOut& out)
 Result<MotWriter> MotWriter::begin(const MotHead& head, TextOut& out) {
   if (head.skeleton.joints() == 0) return refuse("at least one joint for a .mot", "none");
   for (const std::string& name : head.skeleton.joint_names) {
-    // OpenSim splits its columns at blanks, too.
+    // OpenSim also splits columns at blanks.
     if (!fits_a_cell(name) || name.find(' ') != std::string::npos) {
       return refuse("names of joints for a .mot without tabs and blanks", "'" + shown(name) + "'");
     }
   }
   MotWriter writer(head, out);
-  // nColumns counts the time, too.
+  // nColumns includes the time.
   out.text(
       fmt::format("Coordinates\nversion=1\nnRows={}\nnColumns={}\ninDegrees=yes\nendheader\ntime",
                   head.frames, writer.names_.size() + 1));
@@ -54,10 +54,10 @@ Result<void> MotWriter::append(const ClipFrames& frames) {
   const std::size_t row = names_.size();
   for (std::size_t t = 0; t < frames.size(); ++t) {
     ++written_;
-    // Times count from `zero`, since OpenSim's numbers have no date.
+    // Times count from `zero`, because times in OpenSim have no date.
     out_->text(seconds_text((frames.stamps[t] - zero_).count()));
     for (std::size_t c = 0; c < row; ++c) {
-      // The joints are in the order of names_, which may differ from that of the skeleton.
+      // The channels are in the order of names_, which may differ from the order of the skeleton.
       out_->number('\t', scales_[c] * values_[t * row + c], decimals);
     }
     KA_TRY(out_->end_line());
@@ -66,7 +66,7 @@ Result<void> MotWriter::append(const ClipFrames& frames) {
 }
 
 Result<void> MotWriter::finish() const {
-  // nRows stands in the head, so another number of rows would make the file wrong.
+  // The head contains nRows, so another number of rows would make the file wrong.
   if (written_ == frames_) return {};
   return refuse(fmt::format("{} frames for a .mot", frames_), std::to_string(written_));
 }

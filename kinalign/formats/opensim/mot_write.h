@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes a skeleton's motion as OpenSim .mot. Layout and losses: docs/formats/opensim.md.
+// Writes a skeleton's motion as an OpenSim .mot file. Layout and losses: docs/formats/opensim.md.
 #pragma once
 
 #include "kinalign/core/text_out.h"
@@ -12,24 +12,24 @@
 
 namespace kinalign {
 
-/// The number of frames stands in the head, so it must be known before the first frame.
+/// The head of a file. It contains the number of frames, so that number must be known first.
 struct MotHead {
   Skeleton skeleton;
   std::uint64_t frames = 0;
-  Time zero{};  // the stamp of time 0
+  Time zero{};  // the stamp that becomes time 0
 };
 
-/// Writes frame after frame: y up, times to the nanosecond, metres and degrees to six decimals. The
-/// caller commits `out`, which must outlive the writer. Columns: each joint Hips_rz, Hips_rx,
-/// Hips_ry in degrees; roots also Hips_tx, Hips_ty, Hips_tz in metres.
-/// Joint angles are the channels of a BVH of the skeleton, so both files agree.
+/// Writes a .mot file: y up, times to the nanosecond, metres and degrees to six decimals. Each
+/// joint has columns such as Hips_rz, Hips_rx, Hips_ry in degrees. Roots also have Hips_tx,
+/// Hips_ty, Hips_tz in metres. The angles are the channels of a BVH file of this skeleton, so both
+/// files agree. The caller commits `out`, which must exist longer than the writer.
 class MotWriter {
  public:
-  /// Fails if a joint's name has a blank or can't stand in a tab-separated cell.
+  /// Fails if a joint's name contains a blank, or can't be a cell of tab-separated text.
   static Result<MotWriter> begin(const MotHead& head, TextOut& out);
   Result<void> append(const ClipFrames& frames);
-  /// Fails if the number of frames differs from the promised one.
-  /// Call before the file is committed.
+  /// Call this before the file is committed. Fails if the number of frames differs from that in the
+  /// head.
   Result<void> finish() const;
 
  private:
@@ -37,7 +37,7 @@ class MotWriter {
 
   TextOut* out_;
   BvhChannels channels_;
-  // [columns] names, and factors from the values' unit to the file's.
+  // [columns] names, and factors that convert a value to the file's unit.
   std::vector<std::string> names_;
   std::vector<double> scales_;
   std::vector<double> values_;  // [T, columns] of a block

@@ -14,7 +14,7 @@ namespace {
 template <class T>
 using Choices = std::vector<std::pair<std::string, T>>;
 
-// The order of TableField has points first; of_points() depends on it.
+// The fields of points come first, because of_points() depends on this order.
 const Choices<TableField>& field_names() {
   static const Choices<TableField> names{
       {"x", TableField::x},   {"y", TableField::y},         {"z", TableField::z},
@@ -27,15 +27,15 @@ const Choices<TableField>& field_names() {
 
 bool of_points(TableField field) { return field <= TableField::state; }
 
-/// An option that names one of the choices.
-/// The name is read as a text first, and turned into the value by chosen() afterwards.
+/// An option whose value is the name of one of the choices. The name is read as a text first, and
+/// chosen() converts it afterwards.
 template <class T>
 Field choice(const char* key, const Choices<T>& choices, std::string& name) {
   Field field{key, "", &name};
   for (const auto& [known, value] : choices) field.choices.push_back(known);
   return field;
 }
-/// read_options() has checked the name, so it is among the choices.
+/// The choice of this name. read_options() has checked that the name is among the choices.
 template <class T>
 T chosen(const Choices<T>& choices, const std::string& name) {
   return std::find_if(choices.begin(), choices.end(),
@@ -43,15 +43,15 @@ T chosen(const Choices<T>& choices, const std::string& name) {
       ->second;
 }
 
-// The limits are meant against typing errors.
+// The limits detect typing errors.
 Field positive(const char* key, double& number) { return {key, "", &number, 1e-9, 1e9}; }
 Field count(const char* key, std::int64_t& number) { return {key, "", &number, 0.0, 100'000.0}; }
 
-/// Accepts a table that is read later, when the kind of the layout is known.
+/// Accepts a table without reading it. It is read when the kind of the layout is known.
 Result<void> later(const Value&) { return {}; }
 
-/// Reads the keys that are not in a table.
-/// [time], [joints] and other tables are read by the functions below.
+/// Reads the keys outside of tables. The functions below read [time], [joints] and the other
+/// tables.
 Result<void> read_top(const Value& top, TableLayout& layout) {
   const Choices<TableKind> kinds{{"points", TableKind::points}, {"imu", TableKind::imu}};
   const Choices<char> delimiters{
@@ -89,21 +89,21 @@ Result<void> read_top(const Value& top, TableLayout& layout) {
   layout.angular_velocity_unit = chosen(angular_velocities, angular_velocity);
   layout.skip_lines = static_cast<std::size_t>(skip_lines);
   layout.columns = static_cast<std::size_t>(columns);
-  // The name appears in messages about the columns.
+  // A name is needed for messages about the columns.
   if (!layout.name.empty()) return {};
   return at(top, "name, what the layout is called", "none");
 }
 
-/// Reads the table `time`; without it, rows come at rate_hz.
+/// Reads the table `time`. Without this table, the rows have the rate rate_hz.
 Result<void> read_time(const Value& top, TableLayout& layout) {
   const Value* table = top.find({"time"});
-  // Rows then come at rate_hz.
+  // Without the table `time`, the rows have the rate rate_hz.
   if (table == nullptr) return {};
   const Choices<std::int64_t> units{
       {"ns", 1}, {"us", 1000}, {"ms", 1'000'000}, {"s", 1'000'000'000}, {"ticks_100ns", 100}};
   const Choices<std::int64_t> epochs{{"unix", 0}, {"year_1", year_1_s}};
   std::string unit = "ns", epoch = "unix";
-  // A whole number is a column's number, a text its name.
+  // A whole number is the number of a column, and a text is its name.
   ColumnChoice column;
   const auto read_column = [&](const Value& value) -> Result<void> {
     if (value.kind != Value::Kind::whole) return set_option({"column", "", &column.name}, value);
@@ -117,17 +117,17 @@ Result<void> read_time(const Value& top, TableLayout& layout) {
   if (column.name.empty() && column.number == 0) {
     return at(*table, "column in [time], a name or a number from 1", "none");
   }
-  // The scale joins unit and epoch: stamp = number * unit + epoch.
+  // The scale combines unit and epoch: stamp = number * unit + epoch.
   layout.time = TableTime{column, {chosen(units, unit), chosen(epochs, epoch)}};
   return {};
 }
 
-/// Adds a field, if tables of that kind can have it.
+/// Adds a field if tables of this kind can have the field.
 Result<void> add_field(const Value& fields, const std::string& name, const std::string& pattern,
                        TableLayout& layout) {
   const bool points = layout.kind == TableKind::points;
   for (const auto& [known, field] : field_names()) {
-    // skip is a place holder for columns that are not read, in tables of both kinds.
+    // `skip` stands for a column that is not read. Tables of both kinds may have it.
     const bool fits = field == TableField::skip || of_points(field) == points;
     if (known != name || !fits) continue;
     layout.fields.push_back({field, pattern});
@@ -138,15 +138,15 @@ Result<void> add_field(const Value& fields, const std::string& name, const std::
             shown(name));
 }
 
-/// Reads the fields: a table of patterns, or a list in the order of the columns.
-/// A list gives the order of the columns; a table gives their names.
+/// Reads the fields. A table gives the names of the columns as patterns. A list gives the order of
+/// the columns.
 Result<void> read_fields(const Value& fields, TableLayout& layout) {
   layout.by_name = fields.is_table();
   std::map<std::string, std::string> patterns;
   std::vector<std::string> names;
   KA_TRY(set_option(layout.by_name ? Field{"fields", "", &patterns} : Field{"fields", "", &names},
                     fields));
-  // One of the two is empty.
+  // Only one of the two lists has elements.
   for (const auto& [name, pattern] : patterns) KA_TRY(add_field(fields, name, pattern, layout));
   for (const std::string& name : names) KA_TRY(add_field(fields, name, "", layout));
   return {};
@@ -160,14 +160,14 @@ bool has_field(const TableLayout& layout, TableField field) {
 /// Checks that each quantity has all its components or none, and that no component occurs twice.
 Result<void> check_fields(const Value& fields, const TableLayout& layout) {
   using enum TableField;
-  // A field may be skipped often, but has one column otherwise.
+  // The field `skip` may occur often. Every other field has one column.
   for (const FieldColumn& one : layout.fields) {
     const auto same = [&](const FieldColumn& each) { return each.field == one.field; };
     if (one.field != skip && std::count_if(layout.fields.begin(), layout.fields.end(), same) > 1) {
       return at(fields, "each field once", "one twice");
     }
   }
-  // Whole quantities; at least one is needed.
+  // Counts the complete quantities. At least one is needed.
   std::size_t whole = 0;
   const std::vector<std::vector<TableField>> groups{
       {x, y, z}, {qw, qx, qy, qz}, {ax, ay, az}, {gx, gy, gz}};
@@ -184,12 +184,12 @@ Result<void> check_fields(const Value& fields, const TableLayout& layout) {
   return at(fields, "x, y and z, or a quantity of an IMU", "none");
 }
 
-/// Reads the table of the joints or nodes.
+/// Reads the table [joints] or [nodes].
 Result<void> read_members(const Value& top, TableLayout& layout) {
   const std::string_view key = layout.kind == TableKind::points ? "joints" : "nodes";
   const Value* table = top.find({key});
   if (table == nullptr) return at(top, "a table [" + std::string(key) + "]", "none");
-  // The names are optional for nodes: a file may be one node's.
+  // The names are optional for nodes, because a file may contain a single node.
   std::int64_t first_column = 1;
   KA_TRY(read_options(*table, {{"names", "", &layout.names}, count("first_column", first_column)},
                       {{"fields", later}}));
@@ -198,7 +198,7 @@ Result<void> read_members(const Value& top, TableLayout& layout) {
     return at(*table, "names in [" + table->path + "]", "none");
   }
   const Value* fields = table->find({"fields"});
-  // Without fields nothing is known about the columns.
+  // Without fields, the meaning of the columns is unknown.
   if (fields == nullptr) return at(*table, "fields in [" + table->path + "]", "none");
   KA_TRY(read_fields(*fields, layout));
   return check_fields(*fields, layout);
@@ -212,12 +212,12 @@ Result<void> read_state(const Value& top, TableLayout& layout) {
                                {"tracked", "", &layout.state.tracked}});
 }
 
-/// Reads the table `axes`. Axes that mirror need mirrored = true, so that nobody mirrors by
+/// Reads the table `axes`. Axes that mirror need mirrored = true, because mirroring is usually a
 /// mistake.
 Result<void> read_axes(const Value& top, TableLayout& layout) {
   const Value* table = top.find({"axes"});
   if (table == nullptr) return {};
-  // Signed numbers of axes, counted from 1, as in Axes.
+  // The axes as numbers with signs, counted from 1, as in Axes.
   const Choices<int> signed_axes{{"x", 1}, {"y", 2}, {"z", 3}, {"-x", -1}, {"-y", -2}, {"-z", -3}};
   std::string x = "x", y = "y", z = "z";
   bool mirrored = false;
@@ -225,7 +225,7 @@ Result<void> read_axes(const Value& top, TableLayout& layout) {
                                choice("y", signed_axes, y),
                                choice("z", signed_axes, z),
                                {"mirrored", "", &mirrored}}));
-  // An axis that stands twice gives a determinant of 0, which both tests below refuse.
+  // If an axis occurs twice, the determinant is 0, and both tests below refuse it.
   layout.axes = {chosen(signed_axes, x), chosen(signed_axes, y), chosen(signed_axes, z)};
   if (mirrored && layout.kind == TableKind::imu) {
     return at(*table->find({"mirrored"}),
@@ -239,9 +239,10 @@ Result<void> read_axes(const Value& top, TableLayout& layout) {
                                           : "a mirror image without mirrored = true");
 }
 
-/// Checks that columns are given in a form that the file allows, and computes the width of a row.
+/// Checks that the columns are given in a way that fits the file, and computes the number of cells
+/// in a row.
 Result<void> check_columns(const Value& top, TableLayout& layout) {
-  // Names can only be found in a line of names.
+  // Columns can be found by name only if a line contains the names.
   if (layout.by_name && !layout.header) {
     return at(top, "a list of fields, because no line names the columns", "fields by name");
   }
@@ -251,7 +252,7 @@ Result<void> check_columns(const Value& top, TableLayout& layout) {
   }
   if (layout.by_name) return {};
   const std::size_t members = std::max<std::size_t>(layout.names.size(), 1);
-  // The last column that a list of fields describes.
+  // The last column that the list of fields describes.
   const std::size_t last = layout.first_column + members * layout.fields.size() - 1;
   if (layout.first_column == 0 || (layout.columns != 0 && layout.columns < last)) {
     const Value* columns = top.find({"columns"});
@@ -259,7 +260,7 @@ Result<void> check_columns(const Value& top, TableLayout& layout) {
         columns != nullptr ? *columns : top,
         {"", 0, "at least " + std::to_string(last) + " columns", std::to_string(layout.columns)});
   }
-  // The width of a row: without a line of names, only the layout can tell it.
+  // Without a line of names, the width of a row follows from the layout.
   if (layout.columns == 0 && !layout.header) layout.columns = last;
   return {};
 }
@@ -269,7 +270,7 @@ Result<void> check_columns(const Value& top, TableLayout& layout) {
 Result<TableLayout> parse_layout(std::string_view toml, std::string_view name) {
   TableLayout layout;
   KA_TRY(read_toml(toml, name, [&](const Value& top) -> Result<void> {
-    // The kind is read first, because later steps depend on it.
+    // The kind is read first, because the other tables depend on it.
     for (const auto step :
          {read_top, read_time, read_members, read_state, read_axes, check_columns}) {
       KA_TRY(step(top, layout));

@@ -9,7 +9,7 @@ namespace kinalign {
 
 namespace {
 
-// "0" and "0.0" are the same number.
+// True if the cell has the chosen value. "0" and "0.0" are the same number.
 bool holds(const RowChoice& choice, std::string_view cell) {
   if (cell == choice.value) return true;
   double one = 0.0;
@@ -20,7 +20,7 @@ bool holds(const RowChoice& choice, std::string_view cell) {
 }  // namespace
 
 void SeenValues::see(std::string_view value) {
-  // Rows of one body usually follow each other.
+  // The last value is compared first, because rows of one body usually follow each other.
   if (!values_.empty() && values_.back() == value) return;
   if (std::find(values_.begin(), values_.end(), value) != values_.end()) return;
   more_ = values_.size() == most;
@@ -44,7 +44,7 @@ bool RowSelection::takes(const std::vector<std::string_view>& texts) {
     return holds(choice, texts[choice.text]);
   });
   if (!taken) {
-    // No row was taken yet, so these values may have to be shown.
+    // The values are kept until a row was selected. They are shown if no row fits.
     for (std::size_t i = 0; i < choices_.size() && taken_ == 0; ++i) {
       seen_[i].see(texts[choices_[i].text]);
     }
@@ -56,7 +56,7 @@ bool RowSelection::takes(const std::vector<std::string_view>& texts) {
 }
 
 void RowSelection::report(const std::string& file, Findings& findings) const {
-  // An empty stream would otherwise be found only much later.
+  // Without this finding, an empty stream would be noticed much later.
   if (rows_ > 0 && taken_ == 0) {
     std::string wanted;
     std::string there;
@@ -70,7 +70,7 @@ void RowSelection::report(const std::string& file, Findings& findings) const {
                               "no such row; " + std::to_string(rows_) + " rows of " + there},
                         "the stream is empty", "select existing values"});
   }
-  // Without a selection, the rows of all bodies would be read as one.
+  // If no body is selected, the rows of all bodies are read as one body.
   if (bodies_.count() > 1) {
     add_warning(
         findings, {file, 0, "one body in the selected rows", body_.column + " " + bodies_.list()},

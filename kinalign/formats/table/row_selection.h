@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decides which rows of a table are read, and reports a selection that fits no row or is missing.
+// Selects the rows of a table. Adds findings if no row fits, or if a selection is needed but
+// absent.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -12,22 +13,22 @@
 
 namespace kinalign {
 
-/// A condition: the cell of `column` must equal `value`. Numbers are compared as numbers.
-/// Cells are compared as texts first, which is exact for names.
+/// A condition: the cell in `column` must equal `value`. Cells are compared as texts, then as
+/// numbers.
 struct RowChoice {
   std::string column;    // name or number of the column in the file
-  std::size_t text = 0;  // index in RowParser::texts
+  std::size_t text = 0;  // index of the column's text in RowParser::texts
   std::string value;
 };
 
-/// The first few different texts of one column, for messages.
-/// They show a user what a selection could have named.
+/// The first few different texts of one column. A message shows them to a user whose selection fits
+/// no row.
 class SeenValues {
  public:
   void see(std::string_view value);
   std::size_t count() const { return values_.size(); }
   const std::string& first() const { return values_.front(); }
-  std::string list() const;  // "0, 1"
+  std::string list() const;  // for example "0, 1"
 
  private:
   static constexpr std::size_t most = 8;
@@ -35,27 +36,28 @@ class SeenValues {
   bool more_ = false;
 };
 
-/// The selection is made before a row is converted, so rows of other bodies may hold anything.
+/// Selects rows. A row is selected before it is converted, so rows of other bodies may contain
+/// anything.
 class RowSelection {
  public:
   RowSelection() = default;
-  /// `body.column` is the column with the number of the body; empty: there is none. `body.value` is
-  /// not used.
+  /// `body.column` is the column with the number of the body; empty if there is none. `body.value`
+  /// is not used.
   RowSelection(std::vector<RowChoice> choices, RowChoice body);
 
-  /// True if the row meets all choices. `texts` are those of RowParser.
+  /// True if the row fulfils all conditions. `texts` come from RowParser.
   bool takes(const std::vector<std::string_view>& texts);
 
-  /// Call after the last row. Reports a selection that fits no row, and rows of several bodies that
-  /// were read as one.
+  /// Call this after the last row. Adds a finding if no row fits the selection, or if rows of
+  /// several bodies were read as one body.
   void report(const std::string& file, Findings& findings) const;
 
  private:
   std::vector<RowChoice> choices_;
   RowChoice body_;
-  // seen_ is filled only until a row is taken: afterwards no message needs it.
-  std::vector<SeenValues> seen_;  // values of the choices' columns, until a row is taken
-  SeenValues bodies_;             // bodies in the rows taken
+  // seen_ is filled only until a row was selected, because no message needs it afterwards.
+  std::vector<SeenValues> seen_;  // values in the columns of the conditions
+  SeenValues bodies_;             // bodies of the selected rows
   std::uint64_t rows_ = 0, taken_ = 0;
 };
 

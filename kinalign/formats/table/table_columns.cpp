@@ -13,8 +13,8 @@ namespace {
 
 using enum TableField;
 
-/// A quantity: its fields in the order of its slots, and the member that gets its first slot.
-/// needed: a table of points without positions makes no sense, but it may lack states.
+/// A quantity: its fields in the order of their slots, and the member that stores its first slot.
+/// needed: true for positions, because a table of points has no meaning without them.
 struct Quantity {
   std::vector<TableField> fields;
   int TableColumns::*first;
@@ -29,7 +29,7 @@ std::vector<Quantity> quantities() {
           {{gx, gy, gz}, &TableColumns::angular_velocity, false}};
 }
 
-// The pattern may name the joint more than once.
+// The pattern may contain the placeholder more than once.
 std::string with_member(std::string pattern, const std::string& member) {
   for (const std::string_view place : {"{joint}", "{node}"}) {
     for (auto at = pattern.find(place); at != std::string::npos;
@@ -40,19 +40,19 @@ std::string with_member(std::string pattern, const std::string& member) {
   return pattern;
 }
 
-/// Looks up columns by name and hands out slots and texts of the row parser.
+/// Finds columns by name, and assigns slots and texts of RowParser to them.
 class Finder {
  public:
   Finder(const TableLayout& layout, const std::vector<std::string>& members,
          const std::vector<std::string>& names)
       : layout_(layout), members_(members), named_(!names.empty()) {
-    // `times` counts how often a name occurs; the first column of that name is kept.
+    // `times` counts how often a name occurs. The first column of each name is kept.
     for (std::size_t i = 0; i < names.size(); ++i)
       ++places_.try_emplace(as_utf8(names[i]), i).first->second.times;
     found_.uses.resize(named_ ? names.size() : layout.columns);
   }
 
-  /// Quantities come first, so that their slots are consecutive from 0.
+  /// Quantities get their slots first, so that these slots are consecutive from 0.
   Result<TableColumns> find(const std::map<std::string, std::string>& select) {
     for (const Quantity& quantity : quantities()) KA_TRY(place(quantity));
     if (layout_.time) {
@@ -61,12 +61,12 @@ class Finder {
     for (const auto& [column, value] : select) {
       found_.choices.push_back({column, text_of(KA_TRY(selected(column))), value});
     }
-    // A file without that column has one body.
+    // A file without the column of the body has a single body.
     if (places_.contains(layout_.body)) {
       found_.body = {layout_.body, text_of(KA_TRY(column_of({layout_.body, 0}))), ""};
     }
     if (slots_ == 0) return refuse("columns of layout " + layout_.name, "none");
-    // Columns that could hold a misspelt name.
+    // Counts the columns that are not used. One of them may have a misspelt name.
     found_.unread = static_cast<std::size_t>(
         std::count_if(found_.uses.begin(), found_.uses.end(),
                       [](const ColumnUse& use) { return use.slot < 0 && use.text < 0; }));
@@ -74,8 +74,8 @@ class Finder {
   }
 
  private:
-  /// First column of a name, and how many columns have that name.
-  /// A name that occurs twice is an error only if it is used.
+  /// The first column with a name, and the number of columns with this name. A name that occurs
+  /// twice is an error only if it is used.
   struct Place {
     explicit Place(std::size_t i) : column(i) {}
     std::size_t column;
@@ -88,23 +88,22 @@ class Finder {
     return names;
   }
 
-  /// The error for an absent column; it proposes the most similar name.
+  /// The error for an absent column. It suggests the most similar name.
   Failure no_column(const std::string& name) const {
     const std::string near = nearest_name(name, known());
     const std::string hint = near.empty() ? "" : " (nearest: " + shown(near) + ")";
     return refuse("a column " + shown(name), "no such column" + hint);
   }
 
-  /// A column that the user selects by: its name or, if the file has no such name, its number.
+  /// The column of a condition: its name or, if the file has no such name, its number.
   ColumnChoice choice_of(const std::string& column) const {
-    // A column may be called "3". Then the name has priority.
+    // If a column has the name "3", the name has priority over the number.
     std::size_t number = 0;
     if (!places_.contains(column) && parse_integer(column, number)) return {"", number};
     return {column, 0};
   }
 
-  /// Index of the chosen column. A name must occur exactly once, because it would be ambiguous
-  /// otherwise.
+  /// The index of the chosen column. Its name must occur exactly once in the file.
   Result<std::size_t> column_of(const ColumnChoice& choice) const {
     if (choice.number != 0) {
       if (choice.number <= found_.uses.size()) return choice.number - 1;
@@ -124,9 +123,8 @@ class Finder {
     return Failure(unknown_name(column, "an existing column in select", known()));
   }
 
-  /// The columns of a quantity: outer loop over members, inner loop over fields. `missing` gets the
-  /// first name that the file lacks. Members in the outer loop give [M,3] in the order of our
-  /// arrays.
+  /// The columns of a quantity: for each member (joint or node) all fields. This order gives [M,3],
+  /// as in kinalign's arrays. `missing` is set to the first name that the file lacks.
   Result<std::vector<std::size_t>> columns_of(const Quantity& quantity,
                                               std::string& missing) const {
     std::vector<std::size_t> columns;
@@ -134,16 +132,16 @@ class Finder {
       for (const TableField field : quantity.fields) {
         const auto at = std::find_if(layout_.fields.begin(), layout_.fields.end(),
                                      [&](const FieldColumn& each) { return each.field == field; });
-        // The layout does not have this quantity.
+        // The layout does not contain this quantity.
         if (at == layout_.fields.end()) return columns;
         const auto i = static_cast<std::size_t>(at - layout_.fields.begin());
         const std::string name = with_member(at->pattern, members_[m]);
         ColumnChoice choice{name, 0};
         if (!layout_.by_name) {
-          // By order: the columns of a joint follow each other.
+          // Without names, the columns of one joint or node follow each other.
           choice.number = layout_.first_column + m * layout_.fields.size() + i;
         } else if (!places_.contains(name)) {
-          // The name is kept for the message; other columns may still exist.
+          // The name is kept for a message. The search goes on, because other columns may exist.
           if (missing.empty()) missing = name;
           continue;
         }
@@ -153,17 +151,17 @@ class Finder {
     return columns;
   }
 
-  /// Gives the columns of a quantity consecutive slots. A column may have one meaning only.
+  /// Gives the columns of a quantity consecutive slots. A column may belong to one quantity only.
   Result<void> place(const Quantity& quantity) {
     std::string missing;
     const auto columns = KA_TRY(columns_of(quantity, missing));
-    // A needed quantity, or one of which only a part exists.
+    // It is an error if a needed quantity is missing, or if only a part of a quantity exists.
     if (!missing.empty() && (quantity.needed || !columns.empty())) return no_column(missing);
     if (!missing.empty()) found_.absent.push_back(missing);
     if (columns.empty()) return {};
     found_.*quantity.first = slots_;
     for (const std::size_t column : columns) {
-      // Two quantities can't share a column.
+      // A column can't belong to two quantities.
       if (found_.uses[column].slot >= 0) {
         return refuse("one use of column " + std::to_string(column + 1), "two");
       }
@@ -174,7 +172,7 @@ class Finder {
 
   std::size_t text_of(std::size_t column) {
     int& text = found_.uses[column].text;
-    // A column may be text and number at once: the time, or a selection by a number.
+    // A column may be read as text and as number, such as the time or a number in a condition.
     if (text < 0) text = texts_++;
     return static_cast<std::size_t>(text);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the column of each quantity, from a layout and the file's column names.
+// Finds the columns of each quantity, from a layout and the file's column names.
 #pragma once
 
 #include "kinalign/formats/table/layout.h"
@@ -12,25 +12,26 @@
 
 namespace kinalign {
 
-/// RowParser puts numbers into slots and texts into places. Here each quantity gets consecutive
-/// slots.
+/// The result of the search. RowParser stores numbers in slots and texts in places of its arrays.
+/// The slots of each quantity are consecutive.
 struct TableColumns {
   std::vector<ColumnUse> uses;  // [columns]
   std::vector<RowChoice> choices;
-  RowChoice body;      // the column with the number of the body; an empty name: none
-  int time_text = -1;  // index in RowParser::texts; -1: there is no time column
+  RowChoice body;      // the column with the number of the body; empty name: none
+  int time_text = -1;  // index of the time in RowParser::texts; -1: no time column
 
-  // First index in RowParser::values, for M joints or nodes; -1: not in the file.
+  // The first slot of each quantity in RowParser::values, for M joints or nodes; -1: not in the
+  // file.
   int positions = -1;                                              // [M,3]
   int states = -1;                                                 // [M]
   int orientation = -1, acceleration = -1, angular_velocity = -1;  // [M,4], [M,3], [M,3]
   std::vector<std::string> absent;  // one column name of each quantity that the file lacks
-  std::size_t unread = 0;           // number of the file's columns that are not used
+  std::size_t unread = 0;           // number of columns that are not used
 };
 
-/// `members` are the joints or nodes. `names` are the file's column names; empty if the file has
-/// none. Quantities of an IMU, and states, are left out if all their columns are absent. Fails,
-/// without a place, if another column is missing or occurs twice.
+/// `members`: the joints or nodes. `names`: the file's column names; empty if the file has none.
+/// States and inertial quantities are left out if all their columns are absent. Fails if another
+/// column is missing or occurs twice. The caller adds file and line to the error.
 Result<TableColumns> find_columns(const TableLayout& layout,
                                   const std::vector<std::string>& members,
                                   const std::map<std::string, std::string>& select,

@@ -17,9 +17,8 @@ namespace kinalign {
 
 namespace {
 
-/// Makes points from parsed rows.
-/// One of the two builders of TableReader. A builder knows the kind of the stream and not how rows
-/// are read.
+/// Makes points from parsed rows. It is one of the two builders for TableReader. A builder only
+/// knows the kind of the stream, and not how rows are read.
 class PointBuilder {
  public:
   using ReaderType = PointReader;
@@ -41,7 +40,7 @@ class PointBuilder {
       states_[j] = KA_TRY(state_of(row, columns, j));
     }
     append_points(units_, row.values.data(), states_, out);
-    // The positions that were just appended, in our axes.
+    // The positions of the last row, in kinalign's axes.
     const std::size_t first = out.positions.size() - 3 * states_.size();
     mirror_.watch(&out.positions[first], states_.data());
     return {};
@@ -53,20 +52,20 @@ class PointBuilder {
   Result<Tracking> state_of(const RowParser& row, const TableColumns& columns,
                             std::size_t j) const {
     const double* p = &row.values[3 * j];
-    // any_missing is almost always false, and saves three look-ups a joint.
+    // any_missing is almost always false. The test saves three look-ups per joint.
     if (row.any_missing && (row.missing[3 * j] | row.missing[3 * j + 1] | row.missing[3 * j + 2])) {
       return Tracking::missing;
     }
-    // Some programs write a fixed point for a joint that was not seen.
+    // Some programs write a fixed position for a joint that was not seen.
     const std::vector<double>& unseen = layout_.missing_point;
     if (!unseen.empty() && std::equal(p, p + 3, unseen.begin())) return Tracking::missing;
-    // Without a column of states every position counts.
+    // Without a column of states, every joint with a position counts as tracked.
     if (columns.states < 0) return Tracking::tracked;
     const std::size_t slot = static_cast<std::size_t>(columns.states) + j;
     return row.missing[slot] != 0 ? Tracking::missing : named_state(row.values[slot]);
   }
 
-  /// The lists are short, so they are searched in this order.
+  /// Searches the short lists of state numbers one after the other.
   Result<Tracking> named_state(double value) const {
     const auto among = [value](const std::vector<double>& values) {
       return std::find(values.begin(), values.end(), value) != values.end();
@@ -83,8 +82,7 @@ class PointBuilder {
   MirrorWatch mirror_;
 };
 
-/// Makes samples from parsed rows.
-/// One sample per node and row.
+/// Makes inertial samples from parsed rows, one sample per node and row.
 class ImuBuilder {
  public:
   using ReaderType = ImuReader;
@@ -104,7 +102,7 @@ class ImuBuilder {
   }
 
   Result<void> append(const RowParser& row, const TableColumns& columns, ImuSamples& out) {
-    // A quantity that the file lacks stays nullptr.
+    // The pointer of a quantity stays nullptr if the file lacks the quantity.
     for (std::size_t s = 0; s < nodes_; ++s) {
       RawImuSample sample;
       sample.orientation = quantity(row, columns.orientation, 4, s, sample.valid);
@@ -118,7 +116,8 @@ class ImuBuilder {
   void report(const std::string& file, Findings& findings) const { rows_.report(file, findings); }
 
  private:
-  /// Pointer to a node's numbers of one quantity; clears `valid` if one of them is missing.
+  /// A pointer to a node's numbers of one quantity. Sets `valid` to false if one of them is
+  /// missing.
   static const double* quantity(const RowParser& row, int first, std::size_t parts,
                                 std::size_t node, bool& valid) {
     if (first < 0) return nullptr;
@@ -132,9 +131,8 @@ class ImuBuilder {
   ImuConverter rows_;
 };
 
-/// The reader of both kinds of tables; the builder turns rows into points or samples.
-/// Lines are skipped, or name the columns, or are rows. Everything before the first row is decided
-/// by the layout.
+/// Reads both kinds of tables. Each line is skipped, or names the columns, or is a row. The layout
+/// decides this before the first row. The builder converts rows to points or samples.
 template <class Builder>
 class TableReader final : public LineReader<typename Builder::ReaderType> {
  public:
@@ -151,7 +149,7 @@ class TableReader final : public LineReader<typename Builder::ReaderType> {
         select_(options.select),
         own_layout_(options.own_layout()),
         builder_(layout_, options, members_) {
-    // insert() keeps the user's choice where both have one.
+    // If both the user and the layout select by a column, insert() keeps the user's value.
     for (const auto& choice : layout.select) select_.insert(choice);
   }
 
@@ -165,10 +163,11 @@ class TableReader final : public LineReader<typename Builder::ReaderType> {
     return {};
   }
 
-  /// Reports quantities that the file lacks. A misspelt name, in a user's layout or in the file,
-  /// looks the same.
+  /// Adds a finding about quantities that the file lacks. A misspelt name in the layout or in the
+  /// file can't be distinguished from a missing quantity.
   void report_absent() {
-    // A layout of the program fits many files; unused columns show that one may be misspelt.
+    // A built-in layout fits many files. Only if the file has unused columns may a name be
+    // misspelt.
     if (!own_layout_ && columns_.unread == 0) return;
     for (const std::string& column : columns_.absent) {
       add_note(
@@ -184,23 +183,23 @@ class TableReader final : public LineReader<typename Builder::ReaderType> {
   }
 
   Result<void> read(std::string_view line, Frames& out) override {
-    // Counted in lines of the file, comments included.
+    // Lines of the file are counted, including comments.
     if (static_cast<std::size_t>(lines_.number()) <= layout_.skip_lines) return {};
     if (!layout_.comment.empty() && line.starts_with(layout_.comment)) return {};
     if (trimmed(line).empty()) return {};
     if (header_) return read_row(line, out);
     if (layout_.header) return read_head(split_cells(line, layout_.delimiter));
-    // Without a line of names the first line is a row already.
+    // Without a line of names, the first line is a row.
     KA_TRY(read_head({}));
     return read_row(line, out);
   }
 
-  /// Finds the columns, by the line of names or without it.
+  /// Finds the columns, with or without a line of names.
   Result<void> read_head(const std::vector<std::string>& names) {
     if (!layout_.time && stamps_.rate_hz() <= 0.0) {
       return Failure(lines_.error("rate_hz for rows without stamps", "none"));
     }
-    // The columns are found once; from here on rows are read without looking at names.
+    // The columns are found only once. Afterwards rows are read without comparing names.
     columns_ = KA_TRY(find_columns(layout_, members_, select_, names));
     selection_ = RowSelection(columns_.choices, columns_.body);
     row_ = RowParser(layout_.delimiter, columns_.uses);
@@ -210,10 +209,10 @@ class TableReader final : public LineReader<typename Builder::ReaderType> {
 
   Result<void> read_row(std::string_view line, Frames& out) {
     KA_TRY(row_.read(line));
-    // Rows that are not selected have no stamp either.
+    // Rows that are not selected get no stamp.
     if (!selection_.takes(row_.texts)) return {};
     const std::int64_t ns = KA_TRY(column_stamp());
-    // The row goes to `out` or is held until the stamps are final.
+    // The row is appended to `out`, or kept until the stamps are final.
     Frames& target = held_.target(stamps_, out);
     const Time stamp = KA_TRY(stamps_.next(ns));
     KA_TRY(builder_.append(row_, columns_, target));
@@ -223,7 +222,7 @@ class TableReader final : public LineReader<typename Builder::ReaderType> {
   }
 
   Result<std::int64_t> column_stamp() const {
-    // Without a time column RowStamps counts the rows.
+    // Without a time column, RowStamps counts the rows.
     if (columns_.time_text < 0) return 0;
     const std::string_view cell = row_.texts[static_cast<std::size_t>(columns_.time_text)];
     if (const auto ns = parse_stamp(cell, layout_.time->scale)) return *ns;
@@ -254,7 +253,7 @@ std::unique_ptr<ImuReader> make_imu_table_reader(const TableLayout& layout,
                                                  std::string_view file, std::string_view node) {
   assert(layout.kind == TableKind::imu);
   std::vector<std::string> nodes = layout.names;
-  // The file is one node's.
+  // The file contains a single node.
   if (nodes.empty()) {
     const std::string_view name = file_name(file);
     nodes.emplace_back(node.empty() ? name.substr(0, name.rfind('.')) : node);
@@ -264,15 +263,16 @@ std::unique_ptr<ImuReader> make_imu_table_reader(const TableLayout& layout,
 
 namespace {
 
-/// Calls `use(reader, good)` with a reader that was fed the beginning of a file.
+/// Calls `use(reader, good)` with a reader that has read the beginning of a file. `good`: it could
+/// be read.
 template <class Use>
 bool read_head_of_file(const TableLayout& layout, std::string_view head, Use&& use) {
-  // Any rate will do: only the form of the rows matters here.
+  // The value of the rate does not matter, because only the form of the rows is tested.
   StreamOptions options;
   options.rate_hz = layout.rate_hz > 0.0 ? layout.rate_hz : 1.0;
   const std::size_t whole = head.rfind('\n');
-  if (whole != std::string_view::npos) head = head.substr(0, whole + 1);  // the last line is cut
-  // Reading is the test: whatever can be read fits.
+  if (whole != std::string_view::npos) head = head.substr(0, whole + 1);  // without the cut line
+  // The layout fits if the beginning of the file can be read with it.
   const auto reads = [&](auto reader) {
     typename std::decay_t<decltype(*reader)>::Frames frames;
     const bool good = reader->feed(head, frames) && reader->finish(frames);

@@ -19,8 +19,8 @@ Result<void> ShardWriter::add(std::string_view key, std::span<const ShardMember>
   }
   if (keys_.contains(key)) return refuse_sample("each sample's key once in a shard", key);
   if (members.empty()) return refuse_sample("a sample with a member", key);
-  // All members are checked before the first one is written, so a refused sample leaves no part of
-  // itself.
+  // All members are checked before the first one is written, so that a refused sample writes
+  // nothing.
   std::set<std::string_view> endings;
   for (const ShardMember& member : members) {
     const bool good = !member.ending.empty() && member.ending.front() != '.' &&
@@ -33,7 +33,7 @@ Result<void> ShardWriter::add(std::string_view key, std::span<const ShardMember>
   for (const ShardMember& member : members) {
     KA_TRY(tar_.add(fmt::format("{}.{}", key, member.ending), member.bytes));
   }
-  // The key counts only if all members were written.
+  // The key is stored only if all members were written.
   keys_.emplace(key);
   return {};
 }

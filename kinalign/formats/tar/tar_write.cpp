@@ -13,12 +13,13 @@ constexpr std::size_t block = 512;
 constexpr std::size_t longest_in_header = 100, longest_name = 1000;
 constexpr std::uint64_t largest_in_header = (std::uint64_t{1} << 33) - 1;  // 11 octal digits
 
-/// Writes "0000644": digits - 1 octal digits; the zero byte after them is there already.
+/// Writes a number as digits - 1 octal digits, for example "0000644". The zero byte after them is
+/// already in the header.
 void put_octal(std::string& header, std::size_t at, std::size_t digits, std::uint64_t value) {
   header.replace(at, digits - 1, fmt::format("{:0{}o}", value, digits - 1));
 }
 
-/// Header block of a member. The checksum is computed over the header with blanks in its own field.
+/// The header block of a member. The checksum is computed with blanks in the checksum's own field.
 std::string header_of(std::string_view name, std::uint64_t size, char kind) {
   std::string out(block, '\0');
   out.replace(0, name.size(), name);
@@ -27,7 +28,7 @@ std::string header_of(std::string_view name, std::uint64_t size, char kind) {
   put_octal(out, 116, 8, 0);  // group
   put_octal(out, 124, 12, size);
   put_octal(out, 136, 12, 0);  // time
-  // Blanks while the sum is computed, as the format wants it.
+  // The format requires blanks here while the checksum is computed.
   out.replace(148, 8, "        ");
   out[156] = kind;
   out.replace(257, 8, std::string_view("ustar\00000", 8));
@@ -41,18 +42,18 @@ std::string header_of(std::string_view name, std::uint64_t size, char kind) {
   return out;
 }
 
-/// A record such as "20 size=8589934592\n". The number at its front is the record's length,
-/// including itself.
+/// A record such as "20 size=8589934592\n". It begins with its own length, which includes the
+/// digits of the length.
 std::string pax_record(std::string_view key, std::string_view value) {
   const std::string rest = fmt::format(" {}={}\n", key, value);
-  // The number of digits depends on the length, which contains it: the first length that fits is
-  // right.
+  // The length depends on the number of its own digits. The first length that fits is correct.
   std::size_t length = rest.size() + 1;
   while (std::to_string(length).size() + rest.size() != length) ++length;
   return std::to_string(length) + rest;
 }
 
-// "/../" at any place leaves the folder of the archive.
+// True for an absolute name. Also true if the name contains a part "..", which could lead out of
+// the folder.
 bool leads_out(std::string_view name) {
   return name.starts_with('/') || ("/" + std::string(name) + "/").find("/../") != std::string::npos;
 }
@@ -73,18 +74,19 @@ Result<void> TarWriter::add(std::string_view name, std::string_view bytes) {
   if (name.empty() || name.size() > longest_name || has_zero || leads_out(name)) {
     return refuse("a relative name of 1 to 1000 bytes in a tar", "'" + shown(name) + "'");
   }
-  // The fields of the header are too short: a pax header in front of it states the true values.
+  // The fields of the header are too short. A pax header in front of the member contains the true
+  // values.
   std::string records;
   if (name.size() > longest_in_header) records += pax_record("path", name);
   if (size > largest_in_header) records += pax_record("size", std::to_string(size));
   if (!records.empty()) {
     KA_TRY(put(header_of("PaxHeader", records.size(), 'x') + records + padding(records.size())));
   }
-  // Programs that know no pax then read an empty member instead of a wrong size.
+  // Programs that can't read pax headers then read an empty member and not a wrong size.
   const bool too_large = size > largest_in_header;
   KA_TRY(put(header_of(name.substr(0, longest_in_header), too_large ? 0 : size, '0')));
   KA_TRY(put(bytes));
-  // A member begins at a block; the last block of the one before is filled with zeros.
+  // A member begins at a block, so its last block is filled with zeros.
   return put(padding(size));
 }
 

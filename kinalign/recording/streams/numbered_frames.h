@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads the frames of a source that numbers its frames, for noitom_rows.cpp and xsens_rows.cpp.
+// node_rows.cpp uses the same kind of clock for nodes without a counter.
 #pragma once
 
 #include "kinalign/protocols/protocols.h"
