@@ -162,9 +162,8 @@ std::vector<std::string> split_cells(std::string_view line, char delimiter) {
     if (length == std::string_view::npos) break;
     line.remove_prefix(length + 1);
   }
-  while (!cells.empty() && cells.back().empty())
-    cells.pop_back();  // delimiters at the end of the
-                       // line
+  while (!cells.empty() && cells.back().empty()) cells.pop_back();  // delimiters at the line's end
+                                                                    // line
   return cells;
 }
 

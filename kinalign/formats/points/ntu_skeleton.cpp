@@ -14,9 +14,9 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t joint_count = kinect_joints.size();
-// Numbers of cells in a body's line and in a joint's line.
+// The numbers of cells in the line of a body and in the line of a joint.
 constexpr std::size_t body_cells = 10, joint_cells = 12;
-constexpr std::uint64_t most_bodies = 1000;  // in a frame; the sensor tracks at most six
+constexpr std::uint64_t most_bodies = 1000;  // per frame; the sensor tracks at most six
 
 std::vector<ColumnUse> joint_columns() {
   std::vector<ColumnUse> uses(joint_cells);  // x y z depthX depthY colorX colorY qw qx qy qz state
@@ -39,14 +39,15 @@ std::string_view first_word(std::string_view line) {
   return line.substr(0, line.find_first_of(" \t"));
 }
 
-/// A line holds the number of frames, of a frame's bodies or of a body's joints, or it holds a body
-/// or a joint. Blank lines may stand anywhere.
+/// The kinds of lines. A line contains a count of frames, of a frame's bodies or of a body's
+/// joints, or it describes a body or a joint. Blank lines may stand anywhere.
 enum class NtuLine { blank, frames, bodies, body, joints, joint };
 
-/// Tells what each line holds. A line has no mark of its kind: only the counts before it tell.
+/// Determines the kind of each line. The lines do not name their kind, so it follows from the
+/// counts in earlier lines.
 class NtuLines {
  public:
-  /// Fails if the line should be a count and is none.
+  /// Fails if the line must be a count but is not a number.
   Result<NtuLine> next(std::string_view line) {
     line = trimmed(line);
     if (line.empty()) return NtuLine::blank;
@@ -74,7 +75,7 @@ class NtuLines {
 
   /// The number of frames that the file states.
   std::uint64_t frames() const { return frames_; }
-  /// True if the next line belongs to a frame that has begun.
+  /// True in the middle of a frame: the next line belongs to the current frame.
   bool within_frame() const { return next_ != NtuLine::frames && next_ != NtuLine::bodies; }
 
  private:
@@ -82,11 +83,12 @@ class NtuLines {
   std::uint64_t frames_ = 0, bodies_left_ = 0, joints_left_ = 0;
 };
 
-/// Every line is read, also those of other bodies, because the counts must be followed.
+/// Reads the file. The lines of other bodies are read, too, because their counts determine the
+/// kinds of later lines.
 class NtuReader final : public LineReader<PointReader> {
  public:
   NtuReader(const StreamOptions& options, std::string_view file)
-      // The file has no stamps. 30 Hz is the Kinect's rate.
+      // The file has no stamps. A Kinect has 30 frames per second.
       : LineReader(
             file, "the number of frames",
             RowStamps(false, options.rate_hz > 0.0 ? options.rate_hz : 30.0, options.start_ns)),
@@ -95,17 +97,17 @@ class NtuReader final : public LineReader<PointReader> {
         mirror_(joint_names()) {
     const auto body = options.select.find("body");
     if (body != options.select.end()) wanted_ = body->second;
-    // Without the option the first body of the file is read.
+    // Without the option, the first body of the file is read.
     asked_ = !wanted_.empty();
   }
 
  private:
   Result<void> read(std::string_view line, PointFrames& out) override {
     const NtuLine kind = KA_TRY(kinds_.next(line));
-    // The joints of a Kinect are known, so the header is complete at the first line.
+    // The joints of a Kinect are known, so the header is complete after the first line.
     if (kind == NtuLine::frames) header_ = PointHeader{joint_names()};
     if (kind == NtuLine::bodies) {
-      // Joints that the frame does not have stay missing.
+      // Joints that are absent from the frame stay missing.
       frame_ = {};
       seen_ = false;
     }
@@ -116,7 +118,7 @@ class NtuReader final : public LineReader<PointReader> {
     return counted_only || kinds_.within_frame() ? Result<void>{} : end_frame(out);
   }
 
-  /// Reads a body's line. The joints after it are used only if it is the wanted body.
+  /// Reads the line of a body. The following joints are used only if it is the wanted body.
   Result<void> begin_body(std::string_view line) {
     const std::size_t cells = split_cells(line, runs_of_blanks).size();
     if (cells != body_cells) {
@@ -124,7 +126,7 @@ class NtuReader final : public LineReader<PointReader> {
     }
     const std::string_view id = first_word(line);
     if (wanted_.empty()) wanted_ = id;
-    // If an id occurs twice in a frame, the first one is taken.
+    // If an id occurs twice in a frame, the first body with this id is read.
     taken_ = id == wanted_ && !seen_;
     seen_ = seen_ || taken_;
     if (id != wanted_) note_other(id);
@@ -132,7 +134,7 @@ class NtuReader final : public LineReader<PointReader> {
   }
 
   void note_other(std::string_view id) {
-    // The limit keeps a damaged file from filling the message.
+    // The limit keeps the message short if the file is damaged.
     constexpr std::size_t most = 20;
     if (others_.size() >= most) return;
     if (std::find(others_.begin(), others_.end(), id) == others_.end())
@@ -145,7 +147,7 @@ class NtuReader final : public LineReader<PointReader> {
     if (state != 0.0 && state != 1.0 && state != 2.0) {
       return refuse("a tracking state 0, 1 or 2", shown(trimmed(line)));
     }
-    // The rows of other bodies are parsed too, so a fault in them is found.
+    // The joints of other bodies are parsed, too, so that faults in them are found.
     if (taken_) {
       std::copy_n(row_.values.begin(), 3, &frame_.positions[3 * joint_]);
       frame_.states[joint_] = row_.any_missing ? Tracking::missing : static_cast<Tracking>(state);
@@ -156,7 +158,7 @@ class NtuReader final : public LineReader<PointReader> {
 
   Result<void> end_frame(PointFrames& out) {
     const Time stamp = KA_TRY(stamps_.next(0));
-    // A frame without the body is a row of missing joints.
+    // If the body is not in the frame, the row has only missing joints.
     append_points(units_, frame_.positions.data(), frame_.states, out);
     out.stamps.push_back(stamp);
     mirror_.watch(frame_.positions.data(), frame_.states.data());
@@ -164,10 +166,10 @@ class NtuReader final : public LineReader<PointReader> {
     return {};
   }
 
-  /// The counts are complete now, so faults can be judged.
+  /// Adds findings. At the end of the file all counts are complete.
   Result<void> report() override {
     const std::string& file = lines_.file();
-    // The file ended within a frame.
+    // The file ended in the middle of a frame.
     if (kinds_.within_frame()) {
       add_warning(findings, {file, lines_.number(), "a complete frame", "the end of the file"},
                   "the last frame was dropped");
@@ -178,7 +180,7 @@ class NtuReader final : public LineReader<PointReader> {
           {file, 1, std::to_string(kinds_.frames()) + " frames", std::to_string(stamps_.rows())},
           "the existing frames were read");
     }
-    // An id that the user gave must exist.
+    // The user gave an id that is not in the file.
     if (asked_ && frames_with_body_ == 0) {
       add_warning(findings, {file, 0, "body " + shown(wanted_), others()}, "all joints are missing",
                   "select an existing body");
@@ -197,7 +199,7 @@ class NtuReader final : public LineReader<PointReader> {
     return list.empty() ? "none" : list;
   }
 
-  /// [J,3] in the file's axes and unit; joints start as missing unless the body is seen.
+  /// [J,3] positions in the file's axes and unit. All joints are missing until the body is found.
   struct Frame {
     std::array<double, 3 * joint_count> positions{};
     std::array<Tracking, joint_count> states{};
@@ -224,7 +226,7 @@ std::unique_ptr<PointReader> make_ntu_skeleton_reader(const StreamOptions& optio
 }
 
 Result<std::vector<NtuBody>> ntu_bodies(const TextPieces& text, const std::string& name) {
-  // The list is for a message or a menu; a file with more bodies is damaged.
+  // The list is for a message or a menu. Only a damaged file has more bodies.
   constexpr std::size_t most_kept = 1000;
   std::vector<NtuBody> bodies;
   NamedLines lines(name);
@@ -234,7 +236,7 @@ Result<std::vector<NtuBody>> ntu_bodies(const TextPieces& text, const std::strin
     const std::string_view id = first_word(line);
     const auto at = std::find_if(bodies.begin(), bodies.end(),
                                  [&](const NtuBody& one) { return one.id == id; });
-    // Later bodies are not listed; those in the list are still counted.
+    // Further bodies are not listed, but the frames of listed bodies are still counted.
     if (at != bodies.end()) {
       ++at->frames;
     } else if (bodies.size() < most_kept) {
@@ -247,16 +249,16 @@ Result<std::vector<NtuBody>> ntu_bodies(const TextPieces& text, const std::strin
     if (piece.empty()) break;
     KA_TRY(lines.feed(piece, use));
   }
-  Findings ignored;  // the reader reports an incomplete end
+  Findings ignored;  // the reader of the file reports an incomplete end
   KA_TRY(lines.finish_head(use, ignored));
-  // Stable, so that bodies with equally many frames keep the order of the file.
+  // The sort is stable: bodies with the same number of frames keep the order of the file.
   std::stable_sort(bodies.begin(), bodies.end(),
                    [](const NtuBody& a, const NtuBody& b) { return a.frames > b.frames; });
   return bodies;
 }
 
-/// Checks the first four lines: frames, bodies, a body's cells, and 25 joints. The first frame may
-/// have no body.
+/// Checks the first four lines: the number of frames, the number of bodies, the cells of a body,
+/// and 25 joints. The first frame may have no body.
 bool looks_like_ntu_skeleton(std::string_view head) {
   std::vector<std::string_view> first;
   while (first.size() < 4 && !head.empty()) {
@@ -264,11 +266,11 @@ bool looks_like_ntu_skeleton(std::string_view head) {
     first.push_back(trimmed(head.substr(0, end)));
     head.remove_prefix(end == std::string_view::npos ? head.size() : end + 1);
   }
-  // The first line must be a number.
+  // The first line must be the number of frames.
   if (first.size() < 2 || !count(first[0], "", UINT64_MAX)) return false;
   const auto bodies = count(first[1], "", most_bodies);
   if (!bodies) return false;
-  // A first frame without a body has no further lines.
+  // If the first frame has no body, the next line is the count of the second frame.
   if (*bodies == 0) return first.size() == 2 || count(first[2], "", most_bodies).has_value();
   return first.size() == 4 && split_cells(first[2], runs_of_blanks).size() == body_cells &&
          first[3] == "25";

@@ -15,11 +15,11 @@ namespace kinalign {
 
 namespace {
 
-// Times are seconds without an offset.
+// Times are in seconds, and their zero is that of the file.
 constexpr TimeScale trc_seconds{1'000'000'000, 0};
 
-/// Reads a TRC: five lines of head, then rows.
-/// keys_ and names_ are read from the head; header_ is set with its last line.
+/// Reads a TRC file: five lines of head, then rows. The head sets keys_ and names_, and its last
+/// line sets header_.
 class TrcReader final : public LineReader<PointReader> {
  public:
   TrcReader(const StreamOptions& options, std::string_view file)
@@ -35,7 +35,7 @@ class TrcReader final : public LineReader<PointReader> {
       case 1:
         return expect(line.starts_with("PathFileType"), "PathFileType", line);
       case 2:
-        // Kept until line 3, which holds their values.
+        // The keys are stored until line 3, which contains their values.
         keys_ = split_cells(line, '\t');
         return {};
       case 3:
@@ -63,7 +63,7 @@ class TrcReader final : public LineReader<PointReader> {
       if (keys_[i] == "DataRate") parse_number(facts[i], data_rate_);
       if (keys_[i] == "Units") KA_TRY(read_unit(facts[i]));
     }
-    // Without a unit the numbers have no meaning.
+    // Without a unit, the positions can't be converted.
     return expect(units_.metres > 0.0, "Units among the keys of line 2", "none");
   }
 
@@ -74,15 +74,15 @@ class TrcReader final : public LineReader<PointReader> {
     return {};
   }
 
-  /// Reads line 4: names of columns and markers.
+  /// Reads line 4, the names of the columns and markers.
   Result<void> read_names(std::vector<std::string> cells) {
-    // Each name stands above the first of its three columns.
+    // Each name stands above the first of its three columns, so the other cells are empty.
     std::erase(cells, "");
     KA_TRY(expect(cells.size() > 2 && cells[0] == "Frame#" && cells[1] == "Time",
                   "Frame#, Time and names of markers", cells.empty() ? "" : cells[0]));
     names_.assign(cells.begin() + 2, cells.end());
     double declared = 0.0;
-    // A wrong number of markers does no harm: the names decide.
+    // The number of markers follows from the names. A different stated number is only a finding.
     if (parse_number(markers_fact_, declared) && declared == static_cast<double>(names_.size())) {
       return {};
     }
@@ -93,13 +93,13 @@ class TrcReader final : public LineReader<PointReader> {
     return {};
   }
 
-  /// Reads line 5, the labels X1 Y1 Z1 X2 ... Their number gives the width of a row.
+  /// Reads line 5, the labels X1 Y1 Z1 X2 and so on. Their number determines the width of a row.
   Result<void> read_labels(std::vector<std::string> cells, std::string_view line) {
-    // Two empty cells stand above Frame# and Time.
+    // The cells above Frame# and Time are empty.
     std::erase(cells, "");
     KA_TRY(expect(cells.size() == 3 * names_.size() && cells[0] == "X1",
                   std::to_string(3 * names_.size()) + " labels X1, Y1, Z1, ...", line));
-    // Frame# is not read; Time is kept as text, to be exact to the nanosecond.
+    // Frame# is not read. Time is read as a text, so that it is exact to the nanosecond.
     std::vector<ColumnUse> uses(2 + cells.size());
     uses[1].text = 0;
     for (std::size_t i = 0; i < cells.size(); ++i) uses[2 + i].slot = static_cast<int>(i);
@@ -109,7 +109,7 @@ class TrcReader final : public LineReader<PointReader> {
     return {};
   }
 
-  /// Reads a row. Lines after a blank line are counted but not read.
+  /// Reads a row. A blank line ends the rows. Later lines are counted but not read.
   Result<void> read_row(std::string_view line, PointFrames& out) {
     if (trimmed(line).empty()) {
       // Some programs write an empty line between labels and rows.
@@ -123,13 +123,13 @@ class TrcReader final : public LineReader<PointReader> {
     KA_TRY(row_.read(line));
     const auto ns = parse_stamp(row_.texts[0], trc_seconds);
     KA_TRY(expect(ns.has_value(), "a time in seconds", row_.texts[0]));
-    // For the comparison with DataRate.
+    // These times are compared with DataRate at the end.
     if (stamps_.rows() == 0) first_ns_ = *ns;
     last_ns_ = *ns;
     PointFrames& target = held_.target(stamps_, out);
     target.stamps.push_back(KA_TRY(stamps_.next(*ns)));
     for (std::size_t j = 0; j < states_.size(); ++j) {
-      // A marker without one of its coordinates is missing.
+      // A marker is missing if one of its coordinates is missing.
       const bool missing =
           (row_.missing[3 * j] | row_.missing[3 * j + 1] | row_.missing[3 * j + 2]) != 0;
       states_[j] = missing ? Tracking::missing : Tracking::tracked;
@@ -141,7 +141,7 @@ class TrcReader final : public LineReader<PointReader> {
 
   Result<void> report() override {
     const std::string& file = lines_.file();
-    // NumFrames is not trusted, only compared.
+    // NumFrames is not used for reading. It is only compared.
     if (static_cast<double>(stamps_.rows()) != declared_) {
       add_warning(findings,
                   {file, 3, number_text(declared_, 0) + " frames", std::to_string(stamps_.rows())},
@@ -149,7 +149,7 @@ class TrcReader final : public LineReader<PointReader> {
     }
     const double seconds = 1e-9 * (static_cast<double>(last_ns_) - static_cast<double>(first_ns_));
     const double rate = static_cast<double>(stamps_.rows() - 1) / seconds;
-    // More than 10 % apart: one of the two is wrong.
+    // If the rates differ by more than 10 %, DataRate or the times are wrong.
     if (seconds > 0.0 && data_rate_ > 0.0 && std::abs(rate - data_rate_) > 0.1 * data_rate_) {
       add_warning(findings,
                   {file, 3, fmt::format("times of DataRate {:g}", data_rate_),
@@ -170,7 +170,7 @@ class TrcReader final : public LineReader<PointReader> {
   std::vector<std::string> keys_, names_;
   std::string markers_fact_;
   double declared_ = 0.0, data_rate_ = 0.0;
-  std::int64_t first_ns_ = 0, last_ns_ = 0;  // Time of the first and the last row
+  std::int64_t first_ns_ = 0, last_ns_ = 0;  // times of the first and the last row, ns
   RowParser row_;
   std::vector<Tracking> states_;  // [J] of the current row
   bool ended_ = false;

@@ -9,13 +9,13 @@ namespace kinalign {
 
 namespace {
 
-constexpr int decimals = 5;  // in millimetres, so values are rounded to 0.005 um
+constexpr int decimals = 5;  // of a millimetre, so the largest rounding error is 0.005 um
 constexpr double millimetres = 1000.0;
 
-/// Writes the six lines above the rows: three of keys and their values, names, labels, an empty
-/// line.
+/// Writes the six lines above the rows: three lines of keys and values, the names, the labels, and
+/// an empty line.
 Result<void> put_head(const TrcHead& head, TextOut& out) {
-  // A name with a tab would shift the cells of its line.
+  // A tab in a name would shift the cells of its line.
   const std::string file = fits_a_cell(head.file) ? head.file : "points.trc";
   const std::string rate = fmt::format("{}", head.rate_hz);
   const std::size_t markers = head.names.size();
@@ -29,7 +29,7 @@ Result<void> put_head(const TrcHead& head, TextOut& out) {
   for (const std::string& name : head.names) out.text("\t" + name + "\t\t");
   out.text("\n\t");
   for (std::size_t j = 1; j <= markers; ++j) out.text(fmt::format("\tX{0}\tY{0}\tZ{0}", j));
-  // The empty line that OpenSim's files have.
+  // OpenSim's files have this empty line.
   out.text("\n");
   return out.end_line();
 }
@@ -44,7 +44,7 @@ Result<TrcWriter> TrcWriter::begin(const TrcHead& head, TextOut& out) {
   for (const std::string& name : head.names) {
     if (!fits_a_cell(name)) return refuse("names of markers for a TRC without tabs", shown(name));
   }
-  // The head states the rate, and a rate of 0 would be wrong.
+  // The head contains the rate, so the rate must be known.
   if (!(head.rate_hz > 0.0)) return refuse("a rate for a TRC", fmt::format("{}", head.rate_hz));
   KA_TRY(put_head(head, out));
   return TrcWriter(head, out);
@@ -54,7 +54,7 @@ Result<void> TrcWriter::append(const PointFrames& frames) {
   for (std::size_t t = 0; t < frames.size(); ++t) {
     ++written_;
     out_->integer(static_cast<std::int64_t>(written_));
-    // Times count from `zero`, because TRC has no date.
+    // Times count from `zero`, because TRC files contain no date.
     out_->text("\t" + seconds_text((frames.stamps[t] - zero_).count()));
     for (std::size_t i = t * markers_; i < (t + 1) * markers_; ++i) {
       // Three empty cells keep the other markers in their columns.
@@ -72,7 +72,7 @@ Result<void> TrcWriter::append(const PointFrames& frames) {
 }
 
 Result<void> TrcWriter::finish() const {
-  // NumFrames stands in the head already.
+  // The head already contains NumFrames.
   if (written_ == frames_) return {};
   return refuse(fmt::format("{} frames for a TRC", frames_), std::to_string(written_));
 }

@@ -9,25 +9,25 @@ namespace kinalign {
 
 namespace {
 
-// Both spellings are accepted, in names and in folders.
+// The pairs of words in names of files and folders. Both spellings occur.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 2> words{
     {{"positions", "angles"}, {"Positions", "Angles"}}};
 
-/// `name` with its last "positions" replaced by "angles"; unchanged if it has none.
+/// Replaces the last "positions" in `name` by "angles". Without this word, `name` stays unchanged.
 std::string angles_for(std::string_view name) {
   std::string out(name);
   for (const auto& [positions, angles] : words) {
-    // The last one: the name may contain the word twice.
+    // The last one is replaced, because the name may contain the word twice.
     const auto at = out.rfind(positions);
     if (at != std::string::npos) return out.replace(at, positions.size(), angles);
   }
   return out;
 }
 
-/// Replaces "a/Positions/" by "a/Angles/"; other folders stay unchanged.
+/// Replaces the folder "a/Positions/" by "a/Angles/". Other folders stay unchanged.
 std::string angles_folder(std::string_view path) {
   const std::string_view whole = folder(path);
-  // The folder's name without its slash.
+  // The last folder without its slash.
   const std::string_view name = file_name(whole.substr(0, whole.empty() ? 0 : whole.size() - 1));
   for (const auto& [positions, angles] : words) {
     if (name != positions) continue;
@@ -46,7 +46,7 @@ std::string angles_path(std::string_view path) {
 bool named_as_ui_prmd_positions(std::string_view path) { return angles_path(path) != path; }
 
 bool named_as_ui_prmd_angles(std::string_view path) {
-  // "..._positions_angles.txt" counts as positions.
+  // "..._positions_angles.txt" is a file of positions.
   if (named_as_ui_prmd_positions(path)) return false;
   const std::string_view name = file_name(path);
   return std::any_of(words.begin(), words.end(), [name](const auto& word) {
@@ -63,7 +63,7 @@ Result<std::string> ui_prmd_angles_of(FileSystem& files, const std::string& path
   }
   std::string usual_path = angles_path(path);
   const std::string here = std::string(folder(path)) + angles_for(file_name(path));
-  // The folder Angles first; then the same folder.
+  // The folder Angles is tried first, and then the same folder.
   auto opened = InputFile::open(files, usual_path);
   if (opened) return usual_path;
   if (here != path && InputFile::open(files, here)) return here;

@@ -14,7 +14,7 @@ namespace kinalign {
 
 namespace {
 
-// Three numbers for each joint.
+// The cells of a row: three numbers for each joint.
 constexpr std::size_t cells = 3 * ui_prmd_joints;
 
 constexpr std::array<std::string_view, ui_prmd_joints> names{
@@ -24,7 +24,7 @@ constexpr std::array<std::string_view, ui_prmd_joints> names{
     "LowerLegLeft", "FootLeft",      "ToesLeft",     "UpperLegRight", "LowerLegRight",
     "FootRight",    "ToesRight"};
 
-// Indices into `names`; each parent comes before its children.
+// Parents as indices into `names`. Each parent comes before its children.
 constexpr std::array<int, ui_prmd_joints> parents{-1, 0,  1,  2, 3,  4,  2,  6, 7,  8,  2,
                                                   10, 11, 12, 0, 14, 15, 16, 0, 18, 19, 20};
 
@@ -41,17 +41,16 @@ Quat rotation(const double* degrees) {
          Eigen::AngleAxisd(degrees[1] * degree, Vec3::UnitY());
 }
 
-/// Yields the rows of the file of angles, one at a time.
-/// Pieces of this file are read only when rows of the other one need them, so both advance
-/// together.
+/// Returns the rows of the file of angles, one at a time. It reads a piece of this file only when
+/// the rows of the other file need it, so both files are read in parallel.
 class AngleRows {
  public:
   AngleRows(std::string_view file, TextPieces pieces)
       : lines_(file), pieces_(std::move(pieces)), row_(numbers_parser()) {}
 
-  /// Reads the next row; false at the end.
+  /// Reads the next row. Returns false at the end.
   Result<bool> next(std::vector<double>& angles) {
-    // A piece may hold no complete row.
+    // A piece may contain no complete row.
     while (rows_.empty() && !ended_) {
       const std::string_view piece = KA_TRY(pieces_());
       const auto use = [this](std::string_view line) { return read(line); };
@@ -70,7 +69,7 @@ class AngleRows {
   Result<void> read(std::string_view line) {
     if (trimmed(line).empty()) return {};
     KA_TRY(row_.read(line));
-    // An angle can't be guessed.
+    // A missing angle can't be replaced.
     if (row_.any_missing) return refuse("66 angles", "an empty cell");
     rows_.push_back(row_.values);
     return {};
@@ -79,12 +78,12 @@ class AngleRows {
   NamedLines lines_;
   TextPieces pieces_;
   RowParser row_;
-  std::deque<std::vector<double>> rows_;  // rows of the current piece
+  std::deque<std::vector<double>> rows_;  // rows that were parsed but not used yet
   bool ended_ = false;
 };
 
-/// Turns the joints half a turn about y: the files' z points towards the camera, a Kinect's away
-/// from it.
+/// Rotates the joints by 180 degrees about y. In the files z points towards the camera, but in a
+/// Kinect's space z points away from the camera.
 void turn_forward(std::vector<double>& places) {
   for (std::size_t j = 0; j < ui_prmd_joints; ++j) {
     places[3 * j] = -places[3 * j];
@@ -92,13 +91,13 @@ void turn_forward(std::vector<double>& places) {
   }
 }
 
-/// Combines row i of the offsets with row i of the angles.
-/// Both files have the same rows; if one is longer, its other rows are dropped.
+/// Combines each row of offsets with the row of angles of the same number. If one file is longer,
+/// its last rows are dropped.
 class UiPrmdReader final : public LineReader<PointReader> {
  public:
   UiPrmdReader(const StreamOptions& options, std::string_view offsets_file,
                std::string_view angles_file, TextPieces angles)
-      // The files have no stamps. 30 Hz is the Kinect's rate.
+      // The files have no stamps. A Kinect has 30 frames per second.
       : LineReader(
             offsets_file, "rows of 66 numbers",
             RowStamps(false, options.rate_hz > 0.0 ? options.rate_hz : 30.0, options.start_ns)),
@@ -109,7 +108,7 @@ class UiPrmdReader final : public LineReader<PointReader> {
 
  private:
   Result<void> report() override {
-    // Rows of angles without offsets are only counted.
+    // Further rows of angles have no offsets. They are only counted.
     auto more = KA_TRY(count_angles_left());
     append(findings, angle_rows_.findings);
     report_more(without_angles_, lines_.file(), angles_file_);
@@ -128,7 +127,7 @@ class UiPrmdReader final : public LineReader<PointReader> {
       return {};
     }
     const Time stamp = KA_TRY(stamps_.next(0));
-    // Places first, in the files' axes and unit; then turned and converted.
+    // The positions are first computed in the files' axes and unit, then rotated and converted.
     ui_prmd_places(row_.values, angles_, places_);
     turn_forward(places_);
     append_points(units_, places_.data(), states_, out);
@@ -157,7 +156,7 @@ class UiPrmdReader final : public LineReader<PointReader> {
   std::uint64_t without_angles_ = 0;
   std::vector<double> angles_;
   std::vector<double> places_ = std::vector<double>(cells);
-  // The corpus does not state whether a joint was seen.
+  // The files do not say whether a joint was seen.
   std::vector<Tracking> states_ = std::vector<Tracking>(ui_prmd_joints, Tracking::tracked);
 };
 
@@ -167,13 +166,13 @@ void ui_prmd_places(std::span<const double> offsets, std::span<const double> ang
                     std::span<double> places) {
   assert(offsets.size() == cells && angles.size() == cells && places.size() == cells);
   std::array<Quat, ui_prmd_joints> global;
-  // A parent comes before its children, so one pass is enough.
+  // A parent comes before its children, so one loop is enough.
   for (std::size_t j = 0; j < ui_prmd_joints; ++j) {
     const Quat local = rotation(&angles[3 * j]);
     const Vec3 offset = vec3(offsets, j);
     if (parents[j] < 0) {
       global[j] = local;
-      // The first offset is the place in camera space.
+      // The first offset is the position in camera space.
       vec3(places, j) = offset;
       continue;
     }
@@ -193,7 +192,7 @@ std::unique_ptr<PointReader> make_ui_prmd_kinect_reader(const StreamOptions& opt
 
 bool looks_like_ui_prmd_kinect(std::string_view head) {
   const auto end = head.find('\n');
-  // A copy, because parse_number() reads the character after a number.
+  // A copy is needed, because parse_number() reads the character after a number.
   const std::string line(trimmed(head.substr(0, end)));
   RowParser row = numbers_parser();
   return row.read(line) && !row.any_missing;

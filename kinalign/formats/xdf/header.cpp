@@ -17,8 +17,8 @@ namespace kinalign {
 
 namespace {
 
-/// True if the text begins with a reference that XML allows: one of the five names, or the number
-/// of a character. Expat would refuse any other, such as "&#D" or "&#0;".
+/// True if the text begins with a reference that XML allows: one of five names, or the number of a
+/// character. Expat refuses all others, such as "&#D" or "&#0;".
 bool begins_reference(std::string_view text) {
   constexpr std::array<std::string_view, 5> named{"&amp;", "&lt;", "&gt;", "&quot;", "&apos;"};
   if (std::any_of(named.begin(), named.end(),
@@ -36,8 +36,9 @@ bool begins_reference(std::string_view text) {
   return code <= 0x10ffff && (code < 0xd800 || code > 0xdfff) && code != 0xfffe && code != 0xffff;
 }
 
-/// The XML in UTF-8. Each '&' that begins no reference is escaped, because some programs write a
-/// bare '&' in labels. XML allows no control characters, so each becomes a blank.
+/// Converts the XML to UTF-8 and repairs it. Some programs write a bare '&' in labels, so each '&'
+/// that begins no reference is escaped. XML does not allow control characters, so they become
+/// blanks.
 std::string mended(std::string_view xml) {
   std::string text = as_utf8(xml);
   std::replace_if(
@@ -53,7 +54,7 @@ std::string mended(std::string_view xml) {
   }
 }
 
-/// If a format has two names, the first one is the usual one.
+/// The names of the formats. If a format has two names, the usual one comes first.
 constexpr std::array<std::pair<std::string_view, XdfFormat>, 9> formats{
     {{"int8", XdfFormat::int8},
      {"int16", XdfFormat::int16},
@@ -72,13 +73,13 @@ std::optional<XdfFormat> format_of(std::string_view word) {
   return std::nullopt;
 }
 
-/// Texts of the header that are parsed once the header is complete.
+/// Texts of the header. They are converted to numbers when the header is complete.
 struct Words {
   std::string channel_count, rate, format;
 };
 
-/// Takes the texts of a header, element by element.
-/// path_ holds the open elements, so an element is known by its place and not by its name alone.
+/// Takes the texts of a header, element by element. path_ contains the open elements, because an
+/// element is recognised by its path and not only by its name.
 class HeaderElements final : public XmlHandler {
  public:
   HeaderElements(XdfStream& stream, Words& words) : stream_(stream), words_(words) {}
@@ -90,7 +91,7 @@ class HeaderElements final : public XmlHandler {
   Result<void> end(std::string_view, std::string_view text) override {
     const std::string own(trimmed(text));
     std::string* place = path_.size() == 2 && path_[0] == "info" ? place_of(path_[1]) : nullptr;
-    // The first text counts; <desc> may repeat the names of elements.
+    // Only the first text is used, because <desc> may contain elements of the same names.
     if (place != nullptr && place->empty()) *place = own;
     fill_channel(own);
     path_.pop_back();
@@ -98,7 +99,7 @@ class HeaderElements final : public XmlHandler {
   }
 
  private:
-  /// The text that this element of <info> fills; nullptr for any other element.
+  /// The text that an element in <info> fills; nullptr for any other element.
   std::string* place_of(std::string_view name) const {
     const std::array<std::pair<std::string_view, std::string*>, 8> places{
         {{"name", &stream_.name},
@@ -115,13 +116,13 @@ class HeaderElements final : public XmlHandler {
     return nullptr;
   }
 
-  /// Takes the label, unit or type of a channel; adds the channel at its end.
+  /// Takes the label, unit or type of a channel. At the end of the channel, adds the channel.
   void fill_channel(const std::string& text) {
     static const std::vector<std::string> of_channel{"info", "desc", "channels", "channel"};
-    // The path must begin with info/desc/channels/channel.
+    // Only elements below info/desc/channels/channel matter.
     if (path_.size() < 4 || !std::equal(of_channel.begin(), of_channel.end(), path_.begin()))
       return;
-    // The channel ends here; its label, unit and type came before.
+    // A channel ends here. Its label, unit and type are already known.
     if (path_.size() == 4) stream_.channels.push_back(std::exchange(channel_, {}));
     if (path_.size() != 5) return;
     if (path_[4] == "label") channel_.label = text;
@@ -131,17 +132,17 @@ class HeaderElements final : public XmlHandler {
 
   XdfStream& stream_;
   Words& words_;
-  std::vector<std::string> path_;  // names from the outermost element to the open one
+  std::vector<std::string> path_;  // names of the open elements, outermost first
   XdfChannel channel_;
 };
 
-/// Reads the header's elements. The elements before a fault are kept.
+/// Reads the elements of the header. If there is a fault, the elements before it are kept.
 Result<void> read_elements(std::string_view xml, XdfStream& stream, Words& words) {
-  // The declaration may name another encoding than that of the text.
+  // The declaration is skipped, because it may name a wrong encoding.
   if (xml.starts_with("<?xml")) xml.remove_prefix(std::min(xml.find("?>"), xml.size() - 2) + 2);
   HeaderElements elements(stream, words);
   XmlFeed feed("");
-  // The text was converted to UTF-8, which is Expat's default.
+  // The text is UTF-8 now, which is Expat's default.
   KA_TRY(feed.feed(mended(xml), elements));
   return feed.finish(elements);
 }
@@ -166,21 +167,22 @@ Result<XdfStream> parse_xdf_header(std::uint32_t id, std::string_view xml,
   stream.xml = xml;
   Words words;
   const auto read = read_elements(xml, stream, words);
-  // A fault late in the header leaves the elements before it usable.
+  // If the fault is late in the header, the elements before it can be used.
   if (!read) notes.push_back(read.error());
   const auto& count = words.channel_count;
-  // Without the number of channels no sample can be read.
+  // Without the number of channels, samples can't be read.
   if (!parse_integer(count, stream.channel_count)) return refused("a channel_count", count);
   const auto format = format_of(words.format);
   if (!format) return refused("a known channel_format", words.format);
   stream.format = *format;
-  // A wrong rate only matters for stamps that the file leaves out.
+  // A wrong rate only affects stamps that are not in the file.
   const bool rate = parse_number(words.rate, stream.nominal_rate_hz);
   if (!rate || !(stream.nominal_rate_hz >= 0.0)) {
     stream.nominal_rate_hz = 0.0;
     notes.push_back(refused("a nominal_srate", words.rate).value());
   }
-  // A wrong description is worse than none: labels would stand at wrong columns.
+  // The channels are dropped if their number is wrong, because labels would belong to wrong
+  // columns.
   if (!stream.channels.empty() && stream.channels.size() != stream.channel_count) {
     notes.push_back(Error{"", 0, fmt::format("{} channels described", stream.channel_count),
                           std::to_string(stream.channels.size())});

@@ -19,7 +19,8 @@ namespace kinalign {
 namespace {
 
 constexpr std::string_view magic = "XDF:";
-// Fixed by the format. A recorder writes it so that a reader finds the next chunk after damage.
+// Bytes that the format defines. A recorder writes them, so that a reader finds the next chunk
+// after damage.
 constexpr std::array<std::uint8_t, 16> boundary{0x43, 0xa5, 0x46, 0xdc, 0xcb, 0xf5, 0x41, 0x0f,
                                                 0xb3, 0x0e, 0xd5, 0x46, 0x73, 0x83, 0xcb, 0xe4};
 constexpr std::size_t tag_size = 2, id_size = 4;
@@ -28,7 +29,7 @@ bool is_gzip(std::span<const std::uint8_t> bytes) {
   return bytes.size() >= 2 && bytes[0] == 0x1f && bytes[1] == 0x8b;
 }
 
-// A string has no fixed size and is not asked for.
+// The bytes of a number. A string has no fixed size, so this function is not called for strings.
 std::size_t bytes_of(XdfFormat format) {
   switch (format) {
     case XdfFormat::int8:
@@ -43,14 +44,14 @@ std::size_t bytes_of(XdfFormat format) {
   }
 }
 
-// All integers are kept as int64 and all real numbers as double: both are exact.
+// All integers are stored as int64 and all real numbers as double. Both conversions are exact.
 XdfValues room_for(XdfFormat format) {
   if (format == XdfFormat::string) return std::vector<std::string>{};
   const bool real = format == XdfFormat::float32 || format == XdfFormat::double64;
   return real ? XdfValues(std::vector<double>{}) : XdfValues(std::vector<std::int64_t>{});
 }
 
-/// Takes values from the front of a chunk's content. An incomplete value is not taken.
+/// Reads values from the front of a chunk's content. A value that is cut off is not read.
 class Content {
  public:
   explicit Content(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -67,8 +68,8 @@ class Content {
     return number;
   }
 
-  /// A length in 1, 4 or 8 bytes; the byte before it gives this width.
-  /// Lengths of chunks, texts and numbers of samples all have this form.
+  /// Reads a length of 1, 4 or 8 bytes. The byte before the length states this width. Sizes of
+  /// chunks, sizes of texts and numbers of samples have this form.
   std::optional<std::uint64_t> take_length() {
     const auto width = take<std::uint8_t>();
     if (width == 1) return take<std::uint8_t>();
@@ -79,7 +80,7 @@ class Content {
 
   std::optional<std::string> take_text() {
     const auto length = take_length();
-    // The length is compared before memory is allocated.
+    // The length is checked before memory is allocated.
     if (!length || *length > left()) return std::nullopt;
     const auto* from = reinterpret_cast<const char*>(bytes_.data() + at_);
     at_ += static_cast<std::size_t>(*length);
@@ -91,7 +92,8 @@ class Content {
   std::size_t at_ = 0;
 };
 
-/// Appends a number that has the type Number in the file; false if its bytes are incomplete.
+/// Appends a number that has the type Number in the file. Returns false if its bytes are
+/// incomplete.
 template <class Number, class Value>
 bool append_number(Content& content, std::vector<Value>& out) {
   const auto number = content.take<Number>();
@@ -99,7 +101,7 @@ bool append_number(Content& content, std::vector<Value>& out) {
   return number.has_value();
 }
 
-/// Appends a value of the stream's format; false if its bytes are incomplete.
+/// Appends a value of the stream's format. Returns false if its bytes are incomplete.
 bool append_value(XdfFormat format, Content& content, XdfValues& values) {
   if (auto* text = std::get_if<std::vector<std::string>>(&values)) {
     auto value = content.take_text();
@@ -124,9 +126,9 @@ bool append_value(XdfFormat format, Content& content, XdfValues& values) {
   }
 }
 
-/// Appends one sample; if it is incomplete, nothing is appended and the result is false.
+/// Appends one sample. If it is incomplete, appends nothing and returns false.
 bool append_sample(const XdfStream& stream, Content& content, double& last_stamp, XdfSamples& out) {
-  // To remove the values of a sample that is incomplete.
+  // This size is used to remove the values of an incomplete sample.
   const std::size_t before = std::visit([](const auto& v) { return v.size(); }, out.values);
   const auto width = content.take<std::uint8_t>();
   double stamp = last_stamp;
@@ -135,7 +137,7 @@ bool append_sample(const XdfStream& stream, Content& content, double& last_stamp
     if (!stated) return false;
     stamp = *stated;
   } else if (width == 0) {
-    // The stamp was left out: one step after the previous one.
+    // The file omits this stamp. It is one sample period after the previous stamp.
     stamp += stream.nominal_rate_hz > 0.0 ? 1.0 / stream.nominal_rate_hz : 0.0;
   } else {
     return false;
@@ -145,19 +147,19 @@ bool append_sample(const XdfStream& stream, Content& content, double& last_stamp
   if (stream.channel_count > content.left() / (text ? 2 : bytes_of(stream.format))) return false;
   for (std::uint32_t c = 0; c < stream.channel_count; ++c) {
     if (append_value(stream.format, content, out.values)) continue;
-    // Removed again, so that stamps and values stay of one length.
+    // The values are removed, so that there is one stamp for each sample.
     std::visit([before](auto& v) { v.resize(before); }, out.values);
     return false;
   }
-  // Only a complete sample moves the time on.
+  // An incomplete sample does not change the last stamp.
   last_stamp = stamp;
   out.stamps.push_back(stamp);
   out.deduced.push_back(width == 0 ? 1 : 0);
   return true;
 }
 
-/// The complete samples in `bytes`, which begin with the number of samples. Stamps that the file
-/// omits are deduced from `last_stamp`, which the stream keeps from chunk to chunk. `what_is_wrong`
+/// The complete samples in `bytes`, which begin with the number of samples. If the file omits a
+/// stamp, it is computed from `last_stamp`, which the stream keeps between chunks. `what_is_wrong`
 /// is set if the number of samples differs from the stated number, or if bytes follow the last
 /// sample.
 XdfSamples parse_samples(const XdfStream& stream, std::span<const std::uint8_t> bytes,
@@ -166,7 +168,7 @@ XdfSamples parse_samples(const XdfStream& stream, std::span<const std::uint8_t> 
   samples.stream = stream.id;
   samples.values = room_for(stream.format);
   Content content(bytes);
-  // The stated number is never used for memory; samples are appended as they are found.
+  // No memory is allocated for the stated number. Samples are appended as they are read.
   const auto stated = content.take_length();
   if (!stated) {
     what_is_wrong = Error{"", 0, "a number of samples", "none"};
@@ -174,7 +176,7 @@ XdfSamples parse_samples(const XdfStream& stream, std::span<const std::uint8_t> 
   }
   while (samples.size() < *stated && append_sample(stream, content, last_stamp, samples)) {
   }
-  // The chunk is shorter or longer than its samples.
+  // The chunk contains fewer or more bytes than its samples need.
   if (samples.size() < *stated) {
     what_is_wrong = Error{"", 0, "as many whole samples in a chunk as it states",
                           fmt::format("{} of {}", samples.size(), *stated)};
@@ -190,7 +192,7 @@ XdfSamples parse_samples(const XdfStream& stream, std::span<const std::uint8_t> 
 bool looks_like_xdf(std::string_view head) { return head.starts_with(magic); }
 
 Result<void> XdfReader::feed(std::string_view piece, std::vector<XdfItem>& out) {
-  // Bytes that were used are dropped at the end, so that views stay valid until then.
+  // Used bytes are removed only at the end, so that views stay valid during this call.
   held_.insert(held_.end(), piece.begin(), piece.end());
   if (KA_TRY(begun())) {
     while (step(out)) {
@@ -201,15 +203,15 @@ Result<void> XdfReader::feed(std::string_view piece, std::vector<XdfItem>& out) 
   return {};
 }
 
-/// Checks the file's first bytes; false until they are complete.
+/// Checks the first bytes of the file. Returns false until they are complete.
 Result<bool> XdfReader::begun() {
   if (begun_) return true;
-  // A packed file would otherwise look like a file of another kind.
+  // A compressed file gets its own message.
   if (is_gzip(held_)) {
     return refuse(name_, "an XDF file, unpacked (gzip -d)", "a file packed by gzip");
   }
   const std::string_view head = text_of(held_).substr(0, magic.size());
-  // The beginning may come in two pieces, so only the bytes that are present are compared.
+  // The beginning may arrive in two pieces, so only the present bytes are compared.
   if (head != magic.substr(0, head.size())) {
     return refuse(name_, "XDF: at the beginning", "'" + shown(head) + "'");
   }
@@ -225,11 +227,11 @@ Result<void> XdfReader::finish(std::vector<XdfItem>& out) {
   }
   while (step(out)) {
   }
-  // An incomplete chunk at the end.
+  // The file may end within a chunk.
   const std::size_t left = ahead().size();
   if (left == 0) return {};
   Chunk chunk;
-  // Its length may be known although its content is not there.
+  // The length of the chunk may be known although its content is missing.
   const bool whole_head = !lost_ && find_chunk(chunk) == Found::chunk;
   fault(whole_head ? fmt::format("a last chunk of {} bytes", chunk.size)
                    : std::string("a complete chunk at the end of the file"),
@@ -241,13 +243,13 @@ Result<void> XdfReader::finish(std::vector<XdfItem>& out) {
 void XdfReader::take(std::size_t bytes) {
   at_ += bytes;
   offset_ += bytes;
-  // Another place, so another search.
+  // The position has changed, so the search for a boundary begins again.
   searched_ = 0;
 }
 
-// Handles one chunk. False if more bytes are needed.
+// Handles one chunk. Returns false if more bytes are needed.
 bool XdfReader::step(std::vector<XdfItem>& out) {
-  // After damage only a boundary helps.
+  // After damage, reading continues at the next boundary.
   if (lost_) return resynchronise();
   if (ahead().empty()) return false;
   Chunk found;
@@ -262,9 +264,9 @@ bool XdfReader::step(std::vector<XdfItem>& out) {
   const std::size_t there = ahead().size() - head;
   const bool whole = found.size <= there;
   const std::size_t end = head + (whole ? static_cast<std::size_t>(found.size) : there);
-  // A boundary inside of a chunk shows that the length is wrong.
+  // If a boundary is inside a chunk, the length of the chunk is wrong.
   const auto inside = boundary_before(end);
-  // Boundary chunks contain the boundary themselves.
+  // A boundary chunk contains the boundary as its content.
   const bool is_boundary = inside == head + tag_size && found.size == tag_size + boundary.size() &&
                            little_at<std::uint16_t>(held_, found.content) == 5;
   if (inside && !is_boundary) {
@@ -273,7 +275,7 @@ bool XdfReader::step(std::vector<XdfItem>& out) {
     lost_ = true;
     return true;
   }
-  // More bytes are needed. Their number is known, but the file may end before.
+  // The rest of the chunk is needed, but the file may end before it.
   if (!whole) return false;
   chunk(ahead().subspan(head, static_cast<std::size_t>(found.size)), out);
   take(end);
@@ -290,17 +292,17 @@ XdfReader::Found XdfReader::find_chunk(Chunk& chunk) const {
   if (width == 1) chunk.size = bytes[1];
   if (width == 4) chunk.size = little_at<std::uint32_t>(bytes, 1);
   if (width == 8) chunk.size = little_at<std::uint64_t>(bytes, 1);
-  // A chunk has at least its tag.
+  // A chunk contains at least its tag.
   return chunk.size < tag_size ? Found::damage : Found::chunk;
 }
 
-// Position of the first boundary (sixteen bytes) that lies within the next `end` bytes.
+// The position of the first boundary (16 bytes) in the next `end` bytes.
 std::optional<std::size_t> XdfReader::boundary_before(std::size_t end) {
   const auto bytes = ahead().first(end);
   const auto from = bytes.begin() + static_cast<std::ptrdiff_t>(std::min(searched_, end));
   const auto found = std::search(from, bytes.end(), boundary.begin(), boundary.end());
   if (found != bytes.end()) return static_cast<std::size_t>(found - bytes.begin());
-  // Its last 15 bytes may begin a boundary, so they are searched again.
+  // The last 15 bytes may begin a boundary, so they are searched again later.
   if (end >= boundary.size()) searched_ = std::max(searched_, end - boundary.size() + 1);
   return std::nullopt;
 }
@@ -318,7 +320,7 @@ bool XdfReader::resynchronise() {
   return true;
 }
 
-/// Handles a complete chunk; `bytes` are its tag and content.
+/// Handles a complete chunk. `bytes` are its tag and content.
 void XdfReader::chunk(std::span<const std::uint8_t> bytes, std::vector<XdfItem>& out) {
   const auto tag = little_at<std::uint16_t>(bytes, 0);
   const auto content = bytes.subspan(tag_size);
@@ -326,7 +328,7 @@ void XdfReader::chunk(std::span<const std::uint8_t> bytes, std::vector<XdfItem>&
   if (tag == 1 && text_of(content).find("<version>1.0</version>") == std::string_view::npos) {
     fault("a file header that says version 1.0", "another version");
   }
-  // Kinds 2, 3 and 4 begin with a stream's id.
+  // Chunks with the tags 2, 3 and 4 begin with the id of a stream.
   if (tag >= 2 && tag <= 4 && content.size() < id_size) {
     fault("the id of a stream", "a chunk without an id");
     return;
@@ -337,10 +339,11 @@ void XdfReader::chunk(std::span<const std::uint8_t> bytes, std::vector<XdfItem>&
   if (tag == 0 || tag > 6) fault("chunks of kinds 1 to 6", fmt::format("a chunk of kind {}", tag));
 }
 
-/// Parses a stream's header. The samples of a stream with a bad header are skipped.
+/// Parses the header of a stream. If the header can't be used, the samples of the stream are
+/// skipped.
 void XdfReader::stream_header(std::span<const std::uint8_t> content, std::vector<XdfItem>& out) {
   const auto id = little_at<std::uint32_t>(content, 0);
-  // A second header could change the meaning of samples that were read before.
+  // A second header could change the meaning of earlier samples.
   if (streams_.contains(id)) {
     fault("one header for each stream", fmt::format("a second header for stream {}", id));
     return;
@@ -353,7 +356,8 @@ void XdfReader::stream_header(std::span<const std::uint8_t> content, std::vector
   if (!header) {
     fault(fmt::format("{} in the header of stream {}", header.error().expected, id),
           header.error().found + ": its samples can't be read");
-    // Remembered, so that samples of this stream are no further fault.
+    // The stream is stored without a header, so that its samples are not reported as further
+    // faults.
     streams_[id] = std::nullopt;
     return;
   }
@@ -369,16 +373,16 @@ void XdfReader::samples(std::span<const std::uint8_t> content, std::vector<XdfIt
           fmt::format("samples of stream {} without a header", id));
     return;
   }
-  if (!known->second) return;  // its header is damaged
+  if (!known->second) return;  // the header of the stream can't be used
   std::optional<Error> wrong;
   XdfSamples read = parse_samples(known->second->header, content.subspan(id_size),
                                   known->second->last_stamp, wrong);
-  // The samples before the fault are complete and are passed on.
+  // The samples before the fault are complete, so they are passed on.
   if (wrong) fault(wrong->expected, fmt::format("{} (stream {})", wrong->found, id));
   if (read.size() > 0) out.emplace_back(std::move(read));
 }
 
-/// Parses an offset of a sender's clock, as the recorder measured it.
+/// Parses an offset of a sender's clock that the recorder measured.
 void XdfReader::clock_offset(std::span<const std::uint8_t> content, std::vector<XdfItem>& out) {
   if (content.size() != id_size + 16) {
     fault("a clock offset of 20 bytes", std::to_string(content.size()));
@@ -396,10 +400,10 @@ void XdfReader::clock_offset(std::span<const std::uint8_t> content, std::vector<
   out.emplace_back(offset);
 }
 
-/// Counts a fault. After 100 kinds, all further ones count as the last kind.
+/// Counts a fault. After 100 kinds of faults, further faults count as the last kind.
 void XdfReader::fault(const std::string& expected, const std::string& found) {
   constexpr std::size_t most_kinds = 100;
-  // Faults of one kind differ in `found` only.
+  // Faults of the same kind have the same `expected`; `found` may differ.
   for (Fault& known : faults_) {
     const bool same = known.expected == expected;
     if (same || (&known == &faults_.back() && faults_.size() == most_kinds)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads an XDF file once and describes its streams and their faults.
+// Reads an XDF file once, and describes its streams and their faults.
 #include "kinalign/core/numbers.h"
 #include "kinalign/formats/xdf/xdf.h"
 
@@ -11,15 +11,15 @@ namespace kinalign {
 
 namespace {
 
-/// Collects the results of a pass over the items.
-/// Samples are counted and dropped, so memory does not grow with the file.
+/// Collects the results of one pass. Samples are counted and dropped, so the memory does not grow
+/// with the file.
 class Surveyor {
  public:
   void take(const XdfItem& item) {
     if (const auto* stream = std::get_if<XdfStream>(&item)) {
       places_[stream->id] = survey_.streams.size();
       survey_.streams.emplace_back().stream = *stream;
-      // One place for each stream, in the order of the headers.
+      // There is one element for each stream, in the order of the headers.
       last_.emplace_back();
     } else if (const auto* samples = std::get_if<XdfSamples>(&item)) {
       add(*samples);
@@ -33,7 +33,7 @@ class Surveyor {
     for (XdfStreamSurvey& one : survey_.streams) {
       const std::vector<XdfClockOffset>& offsets = offsets_[one.stream.id];
       one.clock_offsets = offsets.size();
-      // All offsets are needed before a line can be fitted.
+      // All offsets are needed before lines can be fitted.
       one.clock = fit_xdf_clock(offsets);
     }
     return std::move(survey_);
@@ -41,7 +41,7 @@ class Surveyor {
 
  private:
   void add(const XdfSamples& samples) {
-    // The reader passes on samples only after their stream's header.
+    // The reader passes on samples only after the header of their stream.
     const std::size_t place = places_.at(samples.stream);
     XdfStreamSurvey& one = survey_.streams[place];
     one.samples += samples.size();
@@ -55,19 +55,19 @@ class Surveyor {
     }
   }
 
-  /// Counts a stamp; stamps that are no numbers don't count as first or last.
+  /// Counts a stamp. A stamp that is not a number can't be the first or the last stamp.
   static void add_stamp(double stamp, XdfStreamSurvey& one, std::optional<double>& last) {
     if (!(std::abs(stamp) < largest_number)) {
       ++one.timeless;
       return;
     }
-    // Compared with the last stamp that was a number.
+    // Stamps that are not numbers are skipped in this comparison.
     if (last && stamp < *last) {
       ++one.backward;
       one.largest_step_back_s = std::max(one.largest_step_back_s, *last - stamp);
     }
     last = stamp;
-    // Stamps may fall, so first and last are the smallest and the largest.
+    // Stamps may fall, so `first` is the smallest stamp and `last` the largest.
     one.first = std::min(one.first.value_or(stamp), stamp);
     one.last = std::max(one.last.value_or(stamp), stamp);
   }
@@ -86,7 +86,7 @@ Result<Findings> read_xdf(FileSystem& files, const std::string& path, const Prog
   XdfReader reader(path);
   std::vector<XdfItem> items;
   std::uint64_t done = 0;
-  // The empty piece at the end calls finish().
+  // The empty piece at the end of the file leads to finish().
   for (bool ended = false; !ended;) {
     const std::string_view piece = KA_TRY(input.next());
     ended = piece.empty();
@@ -105,7 +105,7 @@ double XdfStreamSurvey::rate_hz() const {
   return static_cast<double>(stamped - 1) / (*last - *first);
 }
 
-/// Reads the whole file without keeping the samples.
+/// Reads the whole file without storing the samples.
 Result<XdfSurvey> survey_xdf(FileSystem& files, const std::string& path, const Progress& progress) {
   Surveyor surveyor;
   const Findings findings =
@@ -114,7 +114,7 @@ Result<XdfSurvey> survey_xdf(FileSystem& files, const std::string& path, const P
         return {};
       }));
   XdfSurvey survey = surveyor.finish();
-  // The size of the file as it is now, for the listing.
+  // The current size of the file, for the listing.
   survey.bytes = KA_TRY(InputFile::open(files, path)).size();
   survey.findings = findings;
   return survey;

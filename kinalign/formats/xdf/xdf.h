@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads XDF 1.0, the files of the Lab Streaming Layer's recorders. Layout: docs/formats/xdf.md.
+// Reads XDF 1.0, the file format of recorders for the Lab Streaming Layer (LSL). Layout:
+// docs/formats/xdf.md.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -20,7 +21,7 @@ namespace kinalign {
 
 enum class XdfFormat : std::uint8_t { int8, int16, int32, int64, float32, double64, string };
 
-/// The format's name in a header: "double64".
+/// The format's name in a header, for example "double64".
 std::string_view name_of(XdfFormat format);
 
 struct XdfChannel {
@@ -33,17 +34,17 @@ struct XdfStream {
   std::uint32_t id = 0;  // may be any number
   std::string name, type, source_id, hostname, created_at;
   std::uint32_t channel_count = 0;
-  double nominal_rate_hz = 0.0;  // 0: irregular
+  double nominal_rate_hz = 0.0;  // 0: samples come irregularly
   XdfFormat format = XdfFormat::double64;
-  /// channel_count elements, or none if the header does not describe the channels.
+  /// One element for each channel. It is empty if the header does not describe the channels.
   std::vector<XdfChannel> channels;
   std::string xml;  // the header as written
 
   bool operator==(const XdfStream&) const = default;
 };
 
-/// The values of samples: integers, floating-point numbers (a float32 is exact in a double) or
-/// texts, by the stream's format.
+/// The values of samples. The stream's format decides whether they are integers, floating-point
+/// numbers or texts. A double contains a float32 exactly.
 using XdfValues =
     std::variant<std::vector<std::int64_t>, std::vector<double>, std::vector<std::string>>;
 
@@ -51,7 +52,7 @@ using XdfValues =
 struct XdfSamples {
   std::uint32_t stream = 0;
   std::vector<double> stamps;  // [T] s on the sender's clock, not corrected
-  /// [T] 1: not in the file; the previous stamp + 1 / nominal rate.
+  /// [T] 1: the file omits the stamp, which is the previous stamp + 1 / nominal rate.
   std::vector<std::uint8_t> deduced;
   XdfValues values;  // [T,C]
 
@@ -59,34 +60,34 @@ struct XdfSamples {
   bool operator==(const XdfSamples&) const = default;
 };
 
-/// The recorder's measurement of a stream's clock.
+/// A measurement of a stream's clock by the recorder.
 struct XdfClockOffset {
   std::uint32_t stream = 0;
-  double time = 0.0;    // s on the sender's clock; LabRecorder writes its own time minus the offset
-  double offset = 0.0;  // s, to be added to the stamps
+  double time = 0.0;    // s on the sender's clock; for LabRecorder its own time minus the offset
+  double offset = 0.0;  // s, to be added to the stamps of the stream
 
   bool operator==(const XdfClockOffset&) const = default;
 };
 
 using XdfItem = std::variant<XdfStream, XdfSamples, XdfClockOffset>;
 
-/// Takes a file in pieces cut anywhere and yields the content of the chunks, in their order. Memory
-/// holds the bytes since the last complete or damaged chunk. Damage ends at the next boundary
-/// chunk, which a recorder writes every 10 seconds. Footers are skipped, because they may
-/// contradict the chunks.
+/// Takes a file in pieces, which may be cut anywhere, and returns the content of the chunks in
+/// order. It keeps the bytes after the last complete or damaged chunk. After damage, reading
+/// continues at the next boundary chunk, which recorders write every 10 seconds. Footers are
+/// skipped, because they may contradict the chunks.
 class XdfReader {
  public:
   explicit XdfReader(std::string name) : name_(std::move(name)) {}
 
-  /// Fails if the file is not an XDF; the error names a gzip. The reader can't be used after a
-  /// failure.
+  /// Fails if the file is not an XDF file. The error says so if the file is compressed with gzip.
+  /// After a failure the reader must not be used again.
   Result<void> feed(std::string_view piece, std::vector<XdfItem>& out);
 
-  /// Call at the end of the file. An incomplete or damaged end is a finding.
+  /// Call this at the end of the file. An incomplete or damaged end is a finding.
   Result<void> finish(std::vector<XdfItem>& out);
 
   /// Faults that did not stop the reading. A repeated fault is one finding with a count and the
-  /// offset of its first occurrence.
+  /// position of its first occurrence.
   Findings findings() const;
 
  private:
@@ -95,8 +96,8 @@ class XdfReader {
     double last_stamp = 0.0;
   };
   struct Chunk {
-    std::size_t content = 0;  // position in `held_` after the length, where the tag begins
-    std::uint64_t size = 0;   // bytes of tag and content, as stated
+    std::size_t content = 0;  // position of the tag in `held_`, after the length
+    std::uint64_t size = 0;   // bytes of tag and content, as the chunk states
   };
   enum class Found { chunk, more, damage };
   struct Fault {
@@ -119,11 +120,11 @@ class XdfReader {
 
   std::string name_;
   std::vector<std::uint8_t> held_;
-  std::size_t at_ = 0;        // position in `held_`; the bytes before it are done
+  std::size_t at_ = 0;        // position in `held_`; the bytes before it are handled
   std::uint64_t offset_ = 0;  // position of held_[at_] in the file
-  std::size_t searched_ = 0;  // number of bytes from at_ on in which no boundary begins
+  std::size_t searched_ = 0;  // number of bytes from at_ on that contain no beginning of a boundary
   bool begun_ = false, lost_ = false;
-  /// Empty: the stream's header can't be used.
+  /// A stream without a value has a header that can't be used.
   std::map<std::uint32_t, std::optional<Stream>> streams_;
   std::vector<Fault> faults_;
 };
@@ -133,43 +134,43 @@ bool looks_like_xdf(std::string_view head);
 /// The sender's clock between two resets. The corrected stamp is stamp + offset + slope * (stamp -
 /// origin).
 struct XdfClockLine {
-  double first = 0.0, last = 0.0;  // s, times of the first and last offset
-  double origin = 0.0;             // s
+  double first = 0.0, last = 0.0;  // s, times of the first and the last offset
+  double origin = 0.0;             // s, the time for which `offset` holds
   double offset = 0.0;             // s, at the origin
-  double slope = 0.0;              // s/s; 0 if there is a single offset
-  /// number of offsets in the fit
+  double slope = 0.0;              // s/s; 0 if there is only one offset
+  /// The number of offsets in the fit.
   std::size_t offsets = 0;
-  double rms_residual = 0.0;      // s, over all offsets, outliers included
+  double rms_residual = 0.0;      // s, over all offsets including outliers
   double largest_residual = 0.0;  // s
 };
 
-/// Fits a line to each stretch between resets. `offsets` are those of one stream in file order,
-/// below 1e15 s, as XdfReader yields them. A reset is a time that steps back, or an offset that
-/// steps by more than a second and stays: the next offset is nearer to the new one than to the old
-/// one. An offset that steps and returns is an outlier.
+/// Fits a line to each stretch between resets of the clock. `offsets` are the offsets of one stream
+/// in the order of the file, below 1e15 s. A reset is a time that steps back, or an offset that
+/// changes by more than a second and stays: the next offset is nearer to the new value than to the
+/// old one. An offset that changes and returns is an outlier.
 std::vector<XdfClockLine> fit_xdf_clock(std::span<const XdfClockOffset> offsets);
 
-/// The stamp on the recorder's clock, by the line that is nearest in time. If two lines are equally
-/// near, the later one is used. Without lines the stamp is unchanged.
+/// The stamp on the recorder's clock. The line that is nearest in time is used. If two lines are
+/// equally near, the later one is used. Without lines the stamp stays unchanged.
 double corrected_xdf_stamp(std::span<const XdfClockLine> lines, double stamp);
 
-/// Passes all items of a file to `take`, in file order, and returns the faults. Fails if `take`
-/// fails.
+/// Passes all items of a file to `take` in the order of the file, and returns the faults. Fails if
+/// `take` fails.
 Result<Findings> read_xdf(FileSystem& files, const std::string& path, const Progress& progress,
                           const std::function<Result<void>(const XdfItem&)>& take);
 
 struct XdfStreamSurvey {
   XdfStream stream;
-  std::uint64_t samples = 0, deduced = 0;  // deduced: stamps that are not in the file
+  std::uint64_t samples = 0, deduced = 0;  // `deduced`: samples without a stamp in the file
   std::optional<double> first, last;       // smallest and largest stamp, s on the sender's clock
-  std::uint64_t backward = 0;              // stamps that are smaller than the previous one
+  std::uint64_t backward = 0;              // stamps below the previous stamp
   double largest_step_back_s = 0.0;
   std::uint64_t timeless = 0;    // samples whose stamp is not a number below 1e15
   std::uint64_t no_numbers = 0;  // values that are NaN or infinite
   std::uint64_t clock_offsets = 0;
-  std::vector<XdfClockLine> clock;  // one for each stretch between resets of the sender's clock
+  std::vector<XdfClockLine> clock;  // one line for each stretch between resets
 
-  /// Rate by the first and the last stamp, pauses included; 0 if no time lies between them.
+  /// The rate from the first to the last stamp, including pauses; 0 if both are equal.
   double rate_hz() const;
 };
 
