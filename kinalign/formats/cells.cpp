@@ -163,7 +163,6 @@ std::vector<std::string> split_cells(std::string_view line, char delimiter) {
     line.remove_prefix(length + 1);
   }
   while (!cells.empty() && cells.back().empty()) cells.pop_back();  // delimiters at the line's end
-                                                                    // line
   return cells;
 }
 

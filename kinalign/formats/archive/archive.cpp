@@ -19,15 +19,14 @@ namespace kinalign {
 
 namespace {
 
-// 255 bytes is the longest name of a file on Linux.
+// On Linux the name of a file has at most 255 bytes.
 constexpr std::size_t longest_name = 1000, longest_part = 255;
-// The first bytes of all files are exempt from the ratio: a short archive may hold a long table of
-// equal numbers.
+// The limit on the ratio does not apply to the first 64 MiB, because a short archive may contain a
+// long table of equal numbers.
 constexpr std::uint64_t not_judged = std::uint64_t{64} << 20;
 
-/// State of libarchive's read callbacks. It keeps the failure, because a callback can return only
-/// -1.
-/// `bytes` belongs to the caller of read_archive().
+/// The state of libarchive's read callbacks. A callback can only return -1 for a failure, so the
+/// error is kept here. `bytes` belongs to the caller of read_archive().
 struct Feed {
   const ArchiveBytes& bytes;
   std::uint64_t at = 0;
@@ -39,7 +38,7 @@ la_ssize_t read_more(archive*, void* data, const void** out) {
   Feed& feed = *static_cast<Feed*>(data);
   const auto got = feed.bytes.read_at(feed.at, feed.buffer);
   if (!got) {
-    // libarchive only learns that reading failed. damage() returns the real error.
+    // libarchive only gets -1. damage() returns the error that was kept.
     feed.failure = got.error();
     return -1;
   }
@@ -48,25 +47,26 @@ la_ssize_t read_more(archive*, void* data, const void** out) {
   return static_cast<la_ssize_t>(*got);
 }
 
-/// libarchive's seek callback: moves to `offset` from the start, the current position or the end.
-/// Positions outside of the archive are refused.
+/// libarchive's callback for seeking. Moves to `offset` from the start, from the current position
+/// or from the end. Positions outside of the archive are refused.
 la_int64_t seek_to(archive*, void* data, la_int64_t offset, int whence) {
   Feed& feed = *static_cast<Feed*>(data);
   const auto size = static_cast<la_int64_t>(feed.bytes.size);
   const la_int64_t from = whence == SEEK_SET   ? 0
                           : whence == SEEK_CUR ? static_cast<la_int64_t>(feed.at)
                                                : size;
-  // Written so that no sum can overflow: both limits are compared with the offset alone.
+  // The comparison avoids sums that could overflow.
   if (offset < -from || offset > size - from) return ARCHIVE_FATAL;
   feed.at = static_cast<std::uint64_t>(from + offset);
   return static_cast<la_int64_t>(feed.at);
 }
 
-/// Sets this thread's locale to UTF-8 for the object's lifetime. libarchive drops names that the
-/// locale's characters can't spell.
+/// Sets the locale of this thread to UTF-8 while the object exists. libarchive drops names with
+/// characters that the locale does not have.
 class NamesInUtf8 {
  public:
-  // A thread's own locale: setlocale() would change that of the whole program.
+  // Only the thread's locale is set, because setlocale() would change the locale of the whole
+  // program.
   NamesInUtf8() : own_(newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr)) {
     if (own_ != nullptr) before_ = uselocale(own_);
   }
@@ -87,12 +87,12 @@ struct Free {
 };
 using Owned = std::unique_ptr<archive, Free>;
 
-/// Names that were passed to the user so far, and the folders in which they lie.
-/// A file and a folder of one name can't both exist on a disk, so one of them would be lost.
+/// The names of files so far, and the folders that contain these files. A disk can't have a file
+/// and a folder with the same name, so one of them would be lost.
 class GivenNames {
  public:
-  /// Adds a name. False if the name was there before, or if a file has the name of one of its
-  /// folders.
+  /// Adds the name of a file. Returns false if the name exists already, or if a file has the name
+  /// of a folder.
   bool add(const std::string& name) {
     if (folders_.contains(name) || !files_.insert(name).second) return false;
     for (auto slash = name.find('/'); slash != std::string::npos;
@@ -108,14 +108,14 @@ class GivenNames {
   std::set<std::string> files_, folders_;
 };
 
-/// Uses libarchive's reading interface only, never its extraction to disk. So nothing is written
-/// that this class has not checked.
+/// Reads an archive. It does not use libarchive's functions that write to the disk. Therefore
+/// nothing is written that this class has not checked.
 class ArchiveReader {
  public:
   ArchiveReader(const ArchiveBytes& bytes, const ArchiveLimits& limits)
       : feed_{bytes}, limits_(limits), archive_(archive_read_new()) {}
 
-  /// Reads entry after entry; checks the name and kind of each before `use` sees it.
+  /// Reads all entries. Checks name and kind of each entry before `use` is called.
   Result<void> read(const UseArchiveFile& use) {
     KA_TRY(open());
     std::uint64_t entries = 0;
@@ -123,21 +123,21 @@ class ArchiveReader {
       archive_entry* entry = nullptr;
       const int status = archive_read_next_header(archive_.get(), &entry);
       if (status == ARCHIVE_EOF) return {};
-      // ARCHIVE_WARN: the entry can be read, with a detail that libarchive did not understand.
+      // ARCHIVE_WARN: libarchive did not understand a detail, but the entry can be read.
       if (status != ARCHIVE_OK && status != ARCHIVE_WARN) return Failure(damage("an entry"));
       if (++entries > limits_.entries) {
         return refuse(fmt::format("at most {} entries", limits_.entries), "more");
       }
       const std::string stated_name = name_of(entry);
-      // The kind comes first: a link has a good name and leads anywhere.
+      // The kind is checked first, because a link with a good name may lead anywhere.
       KA_TRY(check_kind(entry, stated_name));
       auto safe = safe_archive_name(stated_name);
-      // tar often begins with "./", which is no name but harmless.
+      // The entry "./" is no file name, but a tar file often begins with it.
       if (!safe && archive_entry_filetype(entry) == AE_IFDIR && is_top(stated_name)) continue;
       if (!safe) return refuse(safe.error().expected, shown(stated_name));
       if (archive_entry_filetype(entry) == AE_IFDIR) continue;
       if (!given_.add(*safe)) return refuse("each name once", shown(stated_name) + " again");
-      // The pieces are those of the present entry. The next header ends them.
+      // The pieces belong to the current entry. They end when the next header is read.
       KA_TRY(use(*safe, [this, stated_name] { return next_piece(stated_name); }));
     }
   }
@@ -145,7 +145,7 @@ class ArchiveReader {
  private:
   Result<void> open() {
     archive* const a = archive_.get();
-    // Only these formats are switched on. libarchive knows many more, each with its own faults.
+    // Only these formats are enabled, because each further format of libarchive is a risk.
     archive_read_support_format_zip_seekable(a);
     archive_read_support_format_tar(a);
     archive_read_support_filter_gzip(a);
@@ -168,24 +168,24 @@ class ArchiveReader {
                  reason == nullptr ? "damaged bytes" : shown(reason)};
   }
 
-  /// True for an entry that names the archive's top folder, such as "./".
-  /// "." and ".." must be told apart, since both consist of dots.
+  /// True for an entry that stands for the archive's top folder, such as "./". ".." must be
+  /// excluded, because it also consists of dots only.
   static bool is_top(std::string_view name) {
     return name.find_first_not_of("./") == std::string_view::npos && name.find("..") == name.npos &&
            !name.starts_with('/');
   }
 
   static std::string name_of(archive_entry* entry) {
-    // Names in a ZIP may be Latin-1 without saying so.
+    // Names in a ZIP file may be Latin-1.
     const char* name = archive_entry_pathname_utf8(entry);
     if (name == nullptr) name = archive_entry_pathname(entry);
     return name == nullptr ? "" : as_utf8(name);
   }
 
-  /// Refuses links, devices and encrypted files; their kinds could reach outside of the target.
+  /// Refuses links, devices and encrypted files. Links could lead out of the target folder.
   Result<void> check_kind(archive_entry* entry, const std::string& name) const {
     const auto type = archive_entry_filetype(entry);
-    // A hard link in a tar has the type of a regular file.
+    // In a tar file a hard link has the type of a regular file.
     const bool is_link = type == AE_IFLNK || archive_entry_hardlink(entry) != nullptr ||
                          archive_entry_symlink(entry) != nullptr;
     if (is_link) return refuse("only files and folders", "a link, " + shown(name));
@@ -198,8 +198,8 @@ class ArchiveReader {
     return {};
   }
 
-  /// The next bytes of the current file. It counts the bytes itself, because the sizes that an
-  /// archive states are not trusted.
+  /// The next bytes of the current file. The bytes are counted here, because the sizes in an
+  /// archive may be wrong.
   Result<std::string_view> next_piece(const std::string& name) {
     const la_ssize_t got = archive_read_data(archive_.get(), piece_.data(), piece_.size());
     if (got < 0) {
@@ -211,7 +211,7 @@ class ArchiveReader {
       return refuse(fmt::format("at most {} bytes in all files", limits_.bytes),
                     "more files, up to " + shown(name));
     }
-    // A division, because the product of size and ratio could overflow.
+    // A division is used, because the product of size and ratio could overflow.
     if (bytes_ > not_judged && (bytes_ - not_judged) / limits_.ratio > feed_.bytes.size) {
       return refuse(fmt::format("files at most {} times the archive's size", limits_.ratio),
                     "larger files, in " + shown(name));
@@ -219,7 +219,7 @@ class ArchiveReader {
     return std::string_view(piece_.data(), static_cast<std::size_t>(got));
   }
 
-  // feed_ must not move: libarchive holds its address.
+  // libarchive keeps the address of feed_, so feed_ must not be moved.
   Feed feed_;
   const ArchiveLimits& limits_;
   Owned archive_;
@@ -228,11 +228,11 @@ class ArchiveReader {
   std::vector<char> piece_ = std::vector<char>(std::size_t{256} << 10);
 };
 
-// Signatures and sizes of the end record and of an entry (APPNOTE 4.3.12 and 4.3.16).
+// Marks and sizes of the end record and of an entry of the directory (APPNOTE 4.3.12 and 4.3.16).
 constexpr std::string_view end_mark{"PK\5\6", 4}, entry_mark{"PK\1\2", 4};
 constexpr std::size_t end_size = 22, entry_size = 46, longest_comment = 65535;
 
-/// At the end of the file the result is shorter than `size`.
+/// Reads a part of the archive. At the end of the archive the result is shorter than `size`.
 Result<std::string> part(const ArchiveBytes& bytes, std::uint64_t at, std::uint64_t size) {
   std::string out(size, '\0');
   out.resize(KA_TRY(bytes.read_at(at, out)));
@@ -243,26 +243,26 @@ struct Place {
   std::uint64_t at = 0, size = 0;
 };
 
-/// Finds the central directory. It ends where the end record begins, and that record states its
-/// size. Absent for ZIP64, which has more records between the two.
+/// Finds the central directory of a ZIP file. It ends where the end record begins, and the end
+/// record states its size. The result is empty for ZIP64, which has further records in between.
 Result<std::optional<Place>> find_list(const ArchiveBytes& bytes) {
   // A comment of up to 65,535 bytes may follow the end record.
   const std::uint64_t tail = std::min<std::uint64_t>(bytes.size, end_size + longest_comment);
   const std::string text = KA_TRY(part(bytes, bytes.size - tail, tail));
-  // The last match, because the mark may also stand in a file's contents.
+  // The last match is used, because the mark may also occur in a file's contents.
   const auto at = text.rfind(end_mark);
   if (at == std::string::npos || text.size() - at < end_size) return std::nullopt;
   const std::uint64_t size = little_at<std::uint32_t>(octets(text), at + 12);
   const std::uint64_t end = bytes.size - tail + at;
-  // Such a size says that the real one is in the ZIP64 records.
+  // This size means that the real size is in the ZIP64 records.
   constexpr std::uint64_t in_zip64 = 0xFFFFFFFF;
   if (size == in_zip64 || size > end) return std::nullopt;
   return Place{end - size, size};
 }
 
-/// Checks the names in a ZIP's central directory (APPNOTE 6.3.10, 4.3.12). libarchive ends a name
-/// at a NUL, so two readers would see two different names. Passes if the directory can't be found:
-/// reading then reports the fault of such a file.
+/// Checks the names in the central directory of a ZIP file (APPNOTE 6.3.10, 4.3.12). libarchive
+/// cuts a name at a NUL character, but other programs may use the whole name. If the directory
+/// can't be found, the check passes, and libarchive reports the fault when it reads.
 Result<void> check_zip_names(const ArchiveBytes& bytes) {
   const auto list = KA_TRY(find_list(bytes));
   if (!list) return {};
@@ -270,21 +270,21 @@ Result<void> check_zip_names(const ArchiveBytes& bytes) {
   const std::uint64_t end = list->at + list->size;
   while (at + entry_size <= end) {
     const std::string head = KA_TRY(part(bytes, at, entry_size));
-    // The directory is not where it was expected; libarchive will decide.
+    // If the directory is not here, libarchive decides about the file.
     if (!head.starts_with(entry_mark) || head.size() < entry_size) return {};
     const std::uint64_t name_size = little_at<std::uint16_t>(octets(head), 28);
     const std::string name = KA_TRY(part(bytes, at + entry_size, name_size));
     if (name.find('\0') != std::string::npos) {
       return refuse(bytes.name, "names without a NUL in the archive", shown(name));
     }
-    // Name, extra field and comment follow the entry's fixed part.
+    // Name, extra field and comment follow the fixed part of the entry.
     at += entry_size + name_size + little_at<std::uint16_t>(octets(head), 30) +
           little_at<std::uint16_t>(octets(head), 32);
   }
   return {};
 }
 
-// Such characters could change a terminal on which the name is printed.
+// True for characters that could change a terminal when the name is printed.
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
 
 }  // namespace
@@ -304,7 +304,7 @@ Result<std::string> safe_archive_name(std::string_view name) {
   }
   std::string out;
   while (!name.empty()) {
-    // Each part is checked alone; empty ones and "." are dropped.
+    // Each part of the path is checked. Empty parts and "." are removed.
     const std::string_view part = name.substr(0, name.find('/'));
     name.remove_prefix(std::min(name.size(), part.size() + 1));
     if (part.empty() || part == ".") continue;
@@ -314,22 +314,23 @@ Result<std::string> safe_archive_name(std::string_view name) {
     }
     out += (out.empty() ? "" : "/") + std::string(part);
   }
-  // "./" and "." have no name left.
+  // For "./" and ".", no part is left.
   if (out.empty()) return refuse("names");
   return out;
 }
 
 bool looks_like_archive(std::string_view head, std::string_view path) {
   if (head.starts_with("PK\x03\x04") || head.starts_with("PK\x05\x06")) return true;
-  // A tar has the mark "ustar" at byte 257.
+  // A tar file has the mark "ustar" at byte 257.
   if (head.size() > 262 && head.substr(257, 5) == "ustar") return true;
-  // A gzip alone may be any file, so its name decides.
+  // A gzip file may contain anything, so its name decides.
   return head.starts_with("\x1f\x8b") && (path.ends_with(".tar.gz") || path.ends_with(".tgz"));
 }
 
 Result<void> read_archive(const ArchiveBytes& bytes, const ArchiveLimits& limits,
                           const UseArchiveFile& use) {
-  // Checked before libarchive sees the names, which it would cut at a NUL.
+  // The names are checked before libarchive reads them, because libarchive cuts them at a NUL
+  // character.
   KA_TRY(check_zip_names(bytes));
   const NamesInUtf8 locale;
   return ArchiveReader(bytes, limits).read(use);

@@ -7,7 +7,7 @@ namespace kinalign {
 
 namespace {
 
-/// A wanted length of 0 accepts any length.
+/// True if the shapes are equal. A wanted length of 0 accepts any length.
 bool fits(const Shape& found, const Shape& wanted) {
   if (found.size() != wanted.size()) return false;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
@@ -46,7 +46,7 @@ Result<Npz> Npz::read(const ArchiveBytes& bytes, const ArchiveLimits& limits) {
           if (piece.empty()) break;
           file += piece;
         }
-        // A member of another kind shows that the file is no NPZ of numbers.
+        // A file with other members is not an NPZ file of arrays.
         if (!name.ends_with(".npy")) {
           return refuse(bytes.name, "only arrays, NAME.npy", shown(name));
         }
@@ -58,7 +58,7 @@ Result<Npz> Npz::read(const ArchiveBytes& bytes, const ArchiveLimits& limits) {
   return out;
 }
 
-/// `kinds` lists the letters of NpyHeader::kind that the caller can use.
+/// The array with this name. `kinds`: the letters of NpyHeader::kind that the caller accepts.
 Result<const NpyArray*> Npz::find(const std::string& name, std::string_view kinds,
                                   const Shape& shape) const {
   const auto at = arrays_.find(name);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the arrays of numpy's NPZ, a ZIP of .npy members, all into memory.
+// Reads all arrays of a numpy NPZ file into memory. An NPZ file is a ZIP file of .npy members.
 #pragma once
 
 #include "kinalign/formats/archive/archive.h"
@@ -12,18 +12,20 @@
 
 namespace kinalign {
 
-/// The lengths of an array's dimensions, the slowest-varying first. Empty: a single value.
+/// The lengths of an array's dimensions. The last index varies fastest. Empty: a single value.
 using Shape = std::vector<std::uint64_t>;
 
-/// Memory: all arrays at once, at most as many bytes as the limits allow.
+/// All arrays of a file. They are in memory together, with at most as many bytes as the limits
+/// allow.
 class Npz {
  public:
-  /// Members other than .npy are refused. All members together may have at most `limits.bytes`.
+  /// Fails if a member is not a .npy file, or if the members together have more than
+  /// `limits.bytes`.
   static Result<Npz> read(const ArchiveBytes& bytes, const ArchiveLimits& limits);
 
   bool has(const std::string& name) const { return arrays_.contains(name); }
-  /// Each fails if the array is absent, or if its values or its shape differ from the wanted ones.
-  /// A length of 0 in `shape` accepts any length.
+  /// Return the values of an array. Fail if the array is absent, or if its type or shape differs
+  /// from the wanted one. A length of 0 in `shape` accepts any length.
   Result<std::vector<std::int64_t>> integers(const std::string& name, const Shape& shape) const;
   Result<std::vector<double>> numbers(const std::string& name, const Shape& shape) const;
   Result<std::vector<std::string>> texts(const std::string& name, const Shape& shape) const;
@@ -33,8 +35,8 @@ class Npz {
                                const Shape& shape) const;
 
   std::string name_;
-  /// A member's bytes with the array that views them. Nodes of a map keep their place, so the view
-  /// stays valid.
+  /// The bytes of a member, and the array as a view of them. Elements of a std::map do not move, so
+  /// the view stays valid.
   struct Member {
     std::string bytes;
     NpyArray array;

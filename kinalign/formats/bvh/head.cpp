@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Splits a BVH into words, parses its hierarchy, and collects the head from pieces.
+// Splits a BVH file into words, parses its hierarchy, and collects the head from pieces.
 #include "kinalign/formats/bvh/head.h"
 
 #include "kinalign/core/numbers.h"
@@ -22,20 +22,20 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-/// `text` without blanks and control characters at both ends. trimmed() in cells.h drops fewer
-/// characters.
+/// `text` without blanks and control characters at both ends. trimmed() in cells.h only removes
+/// blanks, tabs and line ends.
 std::string_view stripped(std::string_view text) {
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
   while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
   return text;
 }
 
-/// Counts lines as it skips blanks, so a message has the line of the word that it names.
+/// Splits the text into words and counts lines, so that a message names the line of a word.
 class BvhWords {
  public:
   BvhWords(std::string_view text, std::string_view name) : text_(text), name_(name) {}
 
-  /// The next word; a brace is a word of its own. Empty at the end.
+  /// The next word; empty at the end. A brace is a separate word.
   std::string_view next() {
     skip_blanks();
     const std::size_t begin = at_;
@@ -45,14 +45,14 @@ class BvhWords {
   }
 
   std::string_view peek() {
-    // A BvhWords is two views and two numbers, so a copy is cheap.
+    // A BvhWords consists of two views and two numbers, so a copy takes little time.
     const BvhWords before = *this;
     const std::string_view word = next();
     *this = before;
     return word;
   }
 
-  /// The rest of the line, up to a brace: a joint's name may hold blanks.
+  /// The rest of the line up to a brace. A joint's name may contain blanks.
   std::string_view rest_of_line() {
     const std::size_t begin = at_;
     while (at_ < text_.size() && text_[at_] != '\n' && text_[at_] != '{') ++at_;
@@ -78,22 +78,22 @@ class BvhWords {
   std::int64_t line_ = 1;
 };
 
-// In the order of Channel.
+// The names in the order of Channel.
 constexpr std::array<std::string_view, 6> channel_names{"xposition", "yposition", "zposition",
                                                         "xrotation", "yrotation", "zrotation"};
 
-/// Parses without recursion: open_ is the stack of joints, so a deep hierarchy can't overflow the
-/// program's stack.
+/// Parses the hierarchy without recursion, so that a deep hierarchy can't overflow the program's
+/// stack. open_ is the list of joints whose brace is open.
 class HierarchyParser {
  public:
   HierarchyParser(std::string_view text, std::string_view name, Findings& findings)
       : words_(text, name), name_(name), findings_(&findings) {}
 
-  /// Parses the hierarchy and the two lines below MOTION.
+  /// Parses the hierarchy and the two lines after MOTION.
   Result<BvhHierarchy> parse(std::size_t& rows) {
     std::string_view word = without_byte_order_mark(words_.next());
     if (lower(word) != "hierarchy") return Failure(words_.wrong("HIERARCHY", word));
-    // All roots are parsed into one hierarchy; each has the parent -1.
+    // All roots belong to one hierarchy, and each root has the parent -1.
     while (lower(words_.peek()) == "root") KA_TRY(root());
     word = words_.next();
     if (lower(word) != "motion") return Failure(words_.wrong("ROOT or MOTION", word));
@@ -113,8 +113,8 @@ class HierarchyParser {
   }
 
   Result<void> open_joint(int parent) {
-    // No body or group of people has so many joints. The limits matter because later work may be
-    // quadratic in them.
+    // No person or group of people has so many joints. The limits are needed, because the time of
+    // later steps may grow with the square of these numbers.
     constexpr std::size_t most_joints = 10'000, deepest = 500;
     if (out_.names.size() == most_joints || open_.size() == deepest) {
       return Failure(words_.wrong("at most 10000 joints, 500 deep", "one more"));
@@ -124,12 +124,12 @@ class HierarchyParser {
     out_.parents.push_back(parent);
     out_.offsets.emplace_back(Vec3::Zero());
     out_.channels.emplace_back();
-    // The joint stays open until its closing brace; statements in between belong to it.
+    // All statements up to the closing brace belong to this joint.
     open_.push_back(static_cast<int>(out_.names.size()) - 1);
     return brace("{");
   }
 
-  /// One statement inside the innermost open joint.
+  /// Parses one statement of the innermost open joint.
   Result<void> statement() {
     const std::string_view word = words_.next();
     const std::string key = lower(word);
@@ -156,9 +156,9 @@ class HierarchyParser {
     return {};
   }
 
-  /// Parses an End Site; it has an offset and no channels.
+  /// Parses an End Site, which has an offset and no channels.
   Result<void> end_site() {
-    // "Site", or anything else that a writer put there.
+    // Skips "Site", or whatever stands in its place.
     words_.rest_of_line();
     EndSite site;
     site.parent = open_.back();
@@ -167,7 +167,7 @@ class HierarchyParser {
       words_.next();
       site.offset = KA_TRY(offset());
     }
-    if (lower(words_.peek()) == "channels") {  // some writers add "CHANNELS 0"
+    if (lower(words_.peek()) == "channels") {  // some files have "CHANNELS 0" here
       std::vector<Channel> none;
       words_.next();
       KA_TRY(channels(none));
@@ -189,11 +189,12 @@ class HierarchyParser {
     return out;
   }
 
-  /// Parses the channels of a joint: their number, then their names, in the order of the row.
+  /// Parses the channels of a joint: their number, then their names in the order of the values in a
+  /// row.
   Result<void> channels(std::vector<Channel>& out) {
     std::string_view word = words_.next();
     double count = 0;
-    // "3" and "3.0" are both accepted; each of the six channels may occur once.
+    // Both "3" and "3.0" are accepted. Each of the six channels may occur once.
     if (!parse_number(word, count) || count < 0 || count > 6 || count != std::floor(count)) {
       return Failure(words_.wrong("0 to 6 channels", word));
     }
@@ -212,11 +213,11 @@ class HierarchyParser {
     return {};
   }
 
-  /// Parses "Frames: 12" and "Frame Time: 0.0083333". Blanks may stand before the colon.
+  /// Parses "Frames: 12" and "Frame Time: 0.0083333". Blanks may stand in front of the colon.
   Result<void> timing() {
     const std::string_view frames = KA_TRY(value_of("frames", "Frames:"));
     out_.frames_line = words_.line();
-    // A sign or a fraction is no number of frames.
+    // The number of frames must have no sign and no fraction.
     if (!parse_integer(frames, out_.frames)) {
       return Failure(words_.wrong("the number of frames", frames));
     }
@@ -225,13 +226,13 @@ class HierarchyParser {
     }
     words_.next();
     out_.frame_time = KA_TRY(value_of("time", "Frame Time:"));
-    // s: no recording has a longer step, and the stamp of the last frame stays in range.
+    // Seconds. No recording has a longer frame time, and the limit keeps the last stamp in range.
     constexpr double longest = 1e4;
     if (!parse_number(out_.frame_time, out_.frame_seconds) || out_.frame_seconds <= 0.0 ||
         out_.frame_seconds > longest) {
       return Failure(words_.wrong("a frame time above 0 s", out_.frame_time));
     }
-    // Some writers put the rate there instead of the step.
+    // Some programs write the rate instead of the frame time.
     if (out_.frame_seconds >= 1.0) {
       add_warning(*findings_,
                   {std::string(name_), words_.line(), "a frame time below 1 s", out_.frame_time},
@@ -241,12 +242,12 @@ class HierarchyParser {
     return {};
   }
 
-  /// The word after `key` and its colon, with or without blanks around the colon.
+  /// The word after `key` and a colon, with or without blanks around the colon.
   Result<std::string_view> value_of(std::string_view key, std::string_view wanted) {
     std::string_view word = words_.next();
     if (!lower(word).starts_with(key)) return Failure(words_.wrong(std::string(wanted), word));
     word.remove_prefix(key.size());
-    // "Frames:12", "Frames: 12" and "Frames : 12" are all in use.
+    // The forms "Frames:12", "Frames: 12" and "Frames : 12" all occur.
     if (word.empty()) word = words_.next();
     if (word.starts_with(':')) word.remove_prefix(1);
     return word.empty() ? words_.next() : word;
@@ -256,30 +257,31 @@ class HierarchyParser {
   std::string_view name_;
   Findings* findings_;
   BvhHierarchy out_;
-  std::vector<int> open_;    // joints with an open brace, innermost last
-  int offset_decimals_ = 0;  // most digits behind the point in any OFFSET
+  std::vector<int> open_;    // joints whose brace is open, innermost last
+  int offset_decimals_ = 0;  // largest number of decimals in any OFFSET
 };
 
-/// True if `text` reaches beyond the number in the line "Frame Time: ...".
-/// The head is parsed only when it is complete, so that a fault is reported once and with its line.
-/// This check looks at words alone and reads the text again for each piece, which is rare.
+/// True if `text` extends beyond the number in the line "Frame Time: ...". The head is parsed only
+/// when it is complete, so that each fault is reported once and with its line. This check only
+/// compares words. It reads the whole text again for each piece, but a head rarely has several
+/// pieces.
 bool is_whole(std::string_view text) {
   BvhWords words(text, "");
   std::string word;
-  const auto next = [&] {  // false if the word may go on in the next piece
-    // A long word needs no comparison, only its beginning.
+  const auto next = [&] {  // false if the word may continue in the next piece
+    // Only the beginning of a long word needs to be compared.
     word = lower(words.next().substr(0, 64));
     return words.at() < text.size();
   };
   bool motion = false, frame = false;
   while (next()) {
-    if (motion && frame && word.starts_with("time")) {  // the rule of HierarchyParser::value_of
+    if (motion && frame && word.starts_with("time")) {  // as HierarchyParser::value_of does
       word.erase(0, 4);
       if (word.empty() && !next()) return false;
       if (word.starts_with(':')) word.erase(0, 1);
       return !word.empty() || next();
     }
-    // A joint may have any name, also "motion".
+    // The name of a joint is skipped, because it may be any word, such as "motion".
     if (word == "root" || word == "joint" || word == "end") words.rest_of_line();
     frame = word == "frame";
     motion = motion || word == "motion";
@@ -317,8 +319,8 @@ Skeleton skeleton_of(const BvhHierarchy& hierarchy, const BvhOptions& options,
   }
   for (std::size_t j = 0; j < hierarchy.offsets.size(); ++j) {
     const Vec3 offset = hierarchy.offsets[j] * options.metres_per_unit;
-    // Only roots stand in the world. Every other offset is in its joint's own space, which does not
-    // turn.
+    // Only the offset of a root is in the world. All other offsets are in the parent's space, whose
+    // axes stay as they are.
     const bool in_world = options.z_up && hierarchy.parents[j] < 0;
     out.rest_offsets.push_back(in_world ? Vec3(offset.x(), offset.z(), -offset.y()) : offset);
   }
@@ -337,12 +339,12 @@ Result<bool> BvhHead::add(std::string_view piece, Findings& findings) {
     return true;
   }
   if (text_.size() <= longest) return false;
-  KA_TRY(finish(findings));  // reports a fault in the text, if there is one besides its length
+  KA_TRY(finish(findings));  // reports an earlier fault in the text, if there is one
   return refuse(name_, "MOTION within the first 8 MiB", "none");
 }
 
 Result<void> BvhHead::finish(Findings& findings) {
-  text_ += ' ';  // ends the last word
+  text_ += ' ';  // marks the end of the last word
   return parse(findings);
 }
 
@@ -351,7 +353,7 @@ Result<void> BvhHead::parse(Findings& findings) {
   return {};
 }
 
-// The line of a row is counted from here.
+// The number of the line on which the rows begin.
 std::int64_t BvhHead::first_row_line() const {
   return 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(rows_), '\n');
 }
@@ -363,7 +365,8 @@ void BvhHead::forget_text() {
 
 std::string BvhHead::alone() const {
   const std::string head = text_.substr(0, rows_);
-  // The last word "motion" is the keyword: only Frames and Frame Time follow it.
+  // The last word "motion" in the head is the keyword, because only Frames and Frame Time follow
+  // it.
   const std::size_t motion = lower(head).rfind("motion");
   return head.substr(0, motion) + "MOTION\nFrames: 0\nFrame Time: " + hierarchy.frame_time + "\n";
 }
@@ -371,7 +374,7 @@ std::string BvhHead::alone() const {
 Result<std::string> read_bvh_head(FileSystem& files, const std::string& path) {
   InputFile file = KA_TRY(InputFile::open(files, path));
   BvhHead head(path);
-  Findings findings;  // the reader of the whole file reports them
+  Findings findings;  // the reader of the whole file reports these findings
   for (;;) {
     const std::string_view piece = KA_TRY(file.next());
     if (piece.empty()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a BVH in pieces: converts rows of channels into local positions and rotations.
+// Reads a BVH file in pieces: converts rows of channels to local positions and rotations.
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/formats/bvh/rows.h"
 #include "kinalign/motion/stamps.h"
@@ -13,18 +13,18 @@ namespace kinalign {
 
 namespace {
 
-// Square root of 1/2: z up to y up is -90 degrees about x.
+// The square root of 1/2. A rotation by -90 degrees about x converts z up to y up.
 constexpr double half_root = 0.70710678118654752440;
 
-/// values_ parses the text, poser_ makes poses from its frames. The skeleton exists once the head
-/// is complete.
+/// Reads a BVH file. values_ parses the text, and poser_ makes poses from its frames. The skeleton
+/// exists when the head is complete.
 class BvhReader final : public ClipReader {
  public:
   BvhReader(const BvhOptions& options, const std::string& name)
       : options_(options),
         name_(name),
         values_(name, [this](const BvhHierarchy& h) { begin(h); }) {}
-  BvhReader(const BvhReader&) = delete;  // a callback in values_ holds the address of this object
+  BvhReader(const BvhReader&) = delete;  // a callback in values_ contains this address
   BvhReader& operator=(const BvhReader&) = delete;
   ~BvhReader() override = default;
 
@@ -37,33 +37,34 @@ class BvhReader final : public ClipReader {
   Result<void> finish(ClipFrames& out) override {
     KA_TRY(values_.finish(findings));
     release(out);
-    // A file without a frame is judged by its rest pose.
+    // If the file has no frame, the rest pose is checked.
     if (!judged_) judge({});
     return {};
   }
 
   const Skeleton* header() const override { return values_.has_rows() ? &skeleton_ : nullptr; }
 
-  // The caller of read_bvh() takes the hierarchy out of the reader.
+  // read_bvh() moves the hierarchy out of the reader.
   BvhHierarchy& hierarchy() { return values_.hierarchy(); }
   int decimals() const { return values_.decimals(); }
-  /// Appends all channel values to `values` too, for read_bvh(); counts their decimals.
+  /// From now on also appends all channel values to `values`, for read_bvh(), and counts their
+  /// decimals.
   void keep_values(std::vector<double>& values) {
     kept_ = &values;
     values_.count_decimals = true;
   }
 
  private:
-  /// Called once the head is complete, before the first row.
+  /// values_ calls this when the head is complete, before the first row.
   void begin(const BvhHierarchy& hierarchy) {
     skeleton_ = skeleton_of(hierarchy, options_, name_, findings);
     poser_.emplace(hierarchy, options_);
   }
 
-  /// Poses the complete frames into `out`.
+  /// Appends the poses of all complete frames to `out`.
   void release(ClipFrames& out) {
     if (!values_.has_rows()) return;
-    // An incomplete frame stays in values_ until its rest arrives.
+    // An incomplete frame stays in values_ until the rest of the frame arrives.
     const auto values = values_.frames();
     poser_->append(values, out);
     if (!judged_ && !values.empty()) judge(values);
@@ -71,7 +72,7 @@ class BvhReader final : public ClipReader {
     values_.drop_frames();
   }
 
-  /// Checks size and upward axis once, with the first rows.
+  /// Checks size and up axis once, with the first rows.
   void judge(std::span<const double> rows) {
     append(findings, judge_size(values_.hierarchy(), skeleton_, rows, options_, name_));
     judged_ = true;
@@ -80,10 +81,10 @@ class BvhReader final : public ClipReader {
   BvhOptions options_;
   std::string name_;
   BvhValues values_;
-  bool judged_ = false;  // size and upward axis were checked
+  bool judged_ = false;  // true when size and up axis have been checked
   Skeleton skeleton_;
   std::optional<BvhPoser> poser_;
-  std::vector<double>* kept_ = nullptr;  // target of keep_values(); nullptr: none
+  std::vector<double>* kept_ = nullptr;  // target of keep_values(); nullptr if there is none
 };
 
 }  // namespace
@@ -92,7 +93,7 @@ BvhOptions bvh_options(const StreamOptions& options) {
   BvhOptions out;
   if (options.metres_per_unit > 0.0) out.metres_per_unit = options.metres_per_unit;
   out.z_up = options.up == "z";
-  // The first frame comes later than the click, by the latency.
+  // The first frame is later than the user's click, by the click's latency.
   out.start = utc_time(options.start_ns.value_or(0)) +
               Duration{std::llround(options.click_latency_ms * 1e6)};
   return out;
@@ -107,7 +108,7 @@ BvhPoser::BvhPoser(const BvhHierarchy& hierarchy, const BvhOptions& options)
     joint.root = hierarchy.parents[j] < 0;
     std::array<int, 3> axes{-1, -1, -1};
     std::size_t rotations = 0;
-    // The order of the rotations is that of the channels in the row.
+    // Rotations apply in the order of the channels in the row.
     for (const Channel channel : hierarchy.channels[j]) {
       if (channel < 3) {
         joint.position[channel] = column;
@@ -117,7 +118,7 @@ BvhPoser::BvhPoser(const BvhHierarchy& hierarchy, const BvhOptions& options)
       }
       ++column;
     }
-    // Missing rotations are zero, but EulerOrder needs three different axes.
+    // A missing rotation has angle zero, but EulerOrder needs three different axes.
     for (int axis = 0; axis < 3 && rotations < 3; ++axis) {  // axes without a channel come last
       if (std::find(axes.begin(), axes.end(), axis) == axes.end()) axes[rotations++] = axis;
     }
@@ -126,15 +127,14 @@ BvhPoser::BvhPoser(const BvhHierarchy& hierarchy, const BvhOptions& options)
   }
 }
 
-/// Fills one joint's positions in all frames. Array offsets: `positions` begins at the joint's
-/// first frame.
+/// Writes one joint's positions in all frames. `positions` begins at the joint in the first frame.
 void BvhPoser::place(const Joint& joint, std::span<const double> values,
                      std::span<double> positions) const {
-  // Rows of the file are `row_size_` numbers apart, frames of the output `stride`.
+  // Rows of the file have `row_size_` numbers, and frames of the output have `stride` numbers.
   const std::size_t stride = 3 * joints_.size(), frames = values.size() / row_size_;
   for (std::size_t k = 0; k < 3; ++k) {
     double* to = &positions[k];
-    // An OFFSET stands in the place of each channel that is missing.
+    // A component without a channel is the component of OFFSET.
     if (joint.position[k] < 0) {
       const double offset = joint.offset[static_cast<int>(k)];
       for (std::size_t i = 0; i < frames; ++i) to[i * stride] = offset;
@@ -144,7 +144,7 @@ void BvhPoser::place(const Joint& joint, std::span<const double> values,
       for (std::size_t i = 0; i < frames; ++i) to[i * stride] = from[i * row_size_] * scale;
     }
   }
-  // z up to y up: x = x, y = z, z = -y.
+  // Converts z up to y up: x = x, y = z, z = -y.
   if (!options_.z_up || !joint.root) return;
   for (std::size_t i = 0; i < frames; ++i) {
     double* p = &positions[i * stride];
@@ -153,20 +153,21 @@ void BvhPoser::place(const Joint& joint, std::span<const double> values,
   }
 }
 
-/// Fills one joint's rotations in all frames. `rotations` begins at the joint's first frame.
+/// Writes one joint's rotations in all frames. `rotations` begins at the joint in the first frame.
 void BvhPoser::turn(const Joint& joint, std::span<const double> values,
                     std::span<double> rotations) const {
   const std::size_t stride = 4 * joints_.size(), frames = values.size() / row_size_;
   EulerColumns columns;
   for (std::size_t k = 0; k < 3; ++k) {
-    // An axis without a channel stays nullptr: its angle is zero.
+    // If an axis has no channel, its pointer stays nullptr and its angle is zero.
     if (joint.angle[k] >= 0) columns.angles[k] = &values[static_cast<std::size_t>(joint.angle[k])];
   }
   columns.stride = row_size_;
   columns.rotations = rotations.data();
   columns.rotation_stride = stride;
   rotations_from_euler(joint.order, columns, frames);
-  // A root's rotation is in the world, so the turn from z up to y up multiplies it from the left.
+  // A root's rotation is in the world, so the conversion from z up to y up is multiplied from the
+  // left.
   if (!options_.z_up || !joint.root) return;
   for (std::size_t i = 0; i < frames; ++i) {
     const auto q = rotations.subspan(i * stride, 4);
@@ -176,14 +177,14 @@ void BvhPoser::turn(const Joint& joint, std::span<const double> values,
 
 void BvhPoser::append(std::span<const double> values, ClipFrames& out) {
   const std::size_t joints = joints_.size(), frames = values.size() / row_size_;
-  // `out` may hold frames of earlier blocks.
+  // `out` may contain frames of earlier blocks.
   const std::size_t before = out.size();
   out.local_positions.resize((before + frames) * joints * 3);
   out.local_rotations.resize((before + frames) * joints * 4);
   for (std::size_t i = 0; i < frames; ++i) {
     out.stamps.push_back(frame_stamp(options_.start, frame_ns_, frames_++));
   }
-  // Handles all joints of a few frames, then the next few frames, so that the rows stay in the
+  // Converts all joints of a few frames, then the next few frames, so that the rows stay in the
   // first-level cache.
   for (std::size_t first = 0; first < frames; first += euler_frames) {
     const std::size_t some = std::min(euler_frames, frames - first);
@@ -206,7 +207,7 @@ Result<BvhFile> read_bvh(std::string_view text, std::string_view name, const Bvh
   reader.keep_values(file.values);
   KA_TRY(reader.feed(text, file.clip.frames));
   KA_TRY(reader.finish(file.clip.frames));
-  // The header exists: finish() fails without a complete head.
+  // finish() has succeeded, so the header exists.
   file.clip.skeleton = *reader.header();
   file.hierarchy = std::move(reader.hierarchy());
   file.decimals = reader.decimals();

@@ -19,17 +19,17 @@ constexpr std::size_t longest_word = 512;
 
 bool BvhRowRule::line_end(std::uint64_t values, std::int64_t line) {
   const std::uint64_t in_line = values - line_start_;
-  // Blank lines may stand anywhere.
+  // Blank lines are ignored.
   if (in_line == 0) return true;
   const std::uint64_t before = line_start_ % row_size_;
   if (!judged_) {
     judged_ = true;
     strict_ = in_line % row_size_ == 0;
   }
-  // A line that begins within a frame and goes beyond its end.
+  // This line begins within a frame and ends behind the frame's end.
   if (strict_ && before != 0 && before + in_line > row_size_) return false;
   if (before == 0) {
-    // The line may be the one that shifts all others, so it is kept for the message.
+    // This line may be the one that shifts all others, so its number is kept for the message.
     shift_line_ = line;
     shift_values_ = in_line;
   }
@@ -40,7 +40,7 @@ bool BvhRowRule::line_end(std::uint64_t values, std::int64_t line) {
 Result<void> BvhRows::feed(std::string_view piece, Findings& findings) {
   if (ended_) return {};
   if (!carry_.empty()) {
-    // The word that began in the last piece ends here, at the first blank.
+    // The word from the last piece ends at the first blank.
     std::size_t end = 0;
     while (end < piece.size() && !is_blank(piece[end])) ++end;
     if (end == piece.size() || carry_.size() + end > longest_word) return hold(piece);
@@ -52,16 +52,16 @@ Result<void> BvhRows::feed(std::string_view piece, Findings& findings) {
     if (ended_) return {};
   }
   std::size_t end = piece.size();
-  // The last word may go on in the next piece.
+  // The last word may continue in the next piece.
   while (end > 0 && !is_blank(piece[end - 1])) --end;
   KA_TRY(parse(piece.data(), piece.data() + end, findings));
   return ended_ ? Result<void>{} : hold(piece.substr(end));
 }
 
 Result<void> BvhRows::finish(Findings& findings) {
-  // A number at the very end may have lost digits: the file may be truncated.
+  // If the file ends with a number, the file may be truncated and the number may have lost digits.
   if (!carry_.empty() && !ended_) findings.push_back(unended_finding(head_.name, head_.line));
-  KA_TRY(feed("\n", findings));  // the blank ends the last number
+  KA_TRY(feed("\n", findings));  // the line feed ends the last number
   const std::size_t left = count_ % head_.row_size;
   if (left == 0) return {};
   add_warning(findings,
@@ -71,7 +71,7 @@ Result<void> BvhRows::finish(Findings& findings) {
   return {};
 }
 
-// The values that are left begin the next frame; they move to the front.
+// Removes the complete frames. The values of the incomplete frame move to the front.
 void BvhRows::drop_frames() {
   const std::size_t whole = frames().size();
   std::copy(values_.begin() + static_cast<std::ptrdiff_t>(whole),
@@ -80,9 +80,9 @@ void BvhRows::drop_frames() {
   count_ -= whole;
 }
 
-/// Keeps the beginning of a word for the next piece.
+/// Keeps the beginning of a word until the next piece.
 Result<void> BvhRows::hold(std::string_view word) {
-  // One byte more than a word may have, so that the check below notices it.
+  // One byte more than the limit is kept, so that the check below notices a too long word.
   carry_ += word.substr(0, longest_word + 1);
   if (carry_.size() <= longest_word) return {};
   return Failure(wrong_number(carry_));
@@ -96,14 +96,14 @@ bool BvhRows::end_line(std::size_t count) {
   return rule_.line_end(dropped_ * head_.row_size + count, head_.line++);
 }
 
-// The text [at, end) ends in a blank, so that no number touches `end`.
+// Parses the numbers in [at, end). The text ends with a blank, so that the last number is complete.
 Result<void> BvhRows::parse(const char* at, const char* end, Findings& findings) {
-  // A number needs at least two bytes, with its blank. So there is room for all of them, and the
-  // loop need not ask.
+  // A number and its blank need at least two bytes. With this size the loop need not check the
+  // space.
   const std::size_t most = count_ + static_cast<std::size_t>(end - at) / 2 + 1;
   if (values_.size() < most) values_.resize(most);
   double* out = values_.data() + count_;
-  // out and count_ agree only at the end of this function.
+  // count_ is updated only at the end of this function.
   const auto count = [&] { return static_cast<std::size_t>(out - values_.data()); };
   for (;;) {
     for (; at < end && is_blank(*at); ++at) {
@@ -115,7 +115,7 @@ Result<void> BvhRows::parse(const char* at, const char* end, Findings& findings)
     }
     if (at >= end) break;
     const char* behind = parse_number(at, end, *out);
-    // The number must end at a blank: "1.2.3" is no number.
+    // A blank must follow the number, so "1.2.3" is not a number.
     if (behind == nullptr || !is_blank(*behind) || !(std::abs(*out) < largest_number)) {
       count_ = count();
       return strange_word(at, end, findings);
@@ -131,12 +131,13 @@ Result<void> BvhRows::parse(const char* at, const char* end, Findings& findings)
   return {};
 }
 
-/// Handles a word that is no number: a finding after all promised frames, otherwise a failure.
+/// Handles a word that is not a number. It is a finding if all stated frames are read, otherwise an
+/// error.
 Result<void> BvhRows::strange_word(const char* at, const char* end, Findings& findings) {
   const char* behind = at;
   while (behind < end && !is_blank(*behind)) ++behind;
   const std::string_view word(at, static_cast<std::size_t>(behind - at));
-  // Some writers add notes after the rows. They are harmless if all promised frames were read.
+  // Some programs write notes after the rows. The notes do no harm if all stated frames are read.
   if (frames_read() < head_.frames || count_ % head_.row_size != 0 || head_.frames == 0) {
     return Failure(wrong_number(word));
   }
@@ -165,10 +166,10 @@ Result<void> BvhValues::finish(Findings& findings) {
   return {};
 }
 
-/// Called once the head is complete: the text after it belongs to the rows.
+/// values_ calls this when the head is complete. The text after the head contains the rows.
 Result<void> BvhValues::begin_rows(Findings& findings) {
   const BvhHierarchy& hierarchy = head_.hierarchy;
-  // The reader makes its poser here, before the first row arrives.
+  // In this call the reader prepares its poser, before the first row arrives.
   if (on_head_) on_head_(hierarchy);
   const std::size_t row_size = hierarchy.row_size();
   if (row_size == 0) {
@@ -176,7 +177,7 @@ Result<void> BvhValues::begin_rows(Findings& findings) {
   }
   rows_.emplace(BvhRowsHead{name_, row_size, hierarchy.frames, head_.first_row_line()});
   rows_->count_decimals = count_decimals;
-  // The rows in the same piece as the head's end.
+  // The piece that completes the head may contain rows, too.
   KA_TRY(rows_->feed(head_.rows(), findings));
   head_.forget_text();
   return {};

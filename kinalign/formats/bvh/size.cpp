@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks the assumed unit and upward axis. A BVH states neither, so the skeleton must have the size
-// of a person who stands.
+// Checks the assumed unit and up axis. A BVH file states neither, so the check assumes that the
+// skeleton is a standing person.
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/motion/kinematics.h"
 
@@ -14,14 +14,14 @@ namespace kinalign {
 
 namespace {
 
-/// Bounding box of the rest pose, m, relative to the first root: all rotations are the identity.
-/// Axes of the file.
+/// The bounding box of the rest pose (all rotations zero) in the file's axes, m. The first root is
+/// at the origin.
 Eigen::AlignedBox3d rest_box(const Skeleton& skeleton) {
   std::vector<Vec3> at(skeleton.joints(), Vec3::Zero());
   Eigen::AlignedBox3d box(Vec3::Zero());
   for (std::size_t j = 0; j < skeleton.joints(); ++j) {
     const int parent = skeleton.parents[j];
-    // The root stays at the origin, since its place in the world does not matter.
+    // Roots are at the origin, because their position in the world does not matter.
     if (parent >= 0) at[j] = at[static_cast<std::size_t>(parent)] + skeleton.rest_offsets[j];
     box.extend(at[j]);
   }
@@ -36,18 +36,18 @@ struct Unit {
   std::string_view name;
 };
 
-// Units found in public files (docs/formats/bvh.md); the last one is that of the CMU database.
+// Units in public files (docs/formats/bvh.md). The last one is the unit of the CMU database.
 constexpr std::array<Unit, 5> units{{{0.01, "centimetres"},
                                      {1.0, "metres"},
                                      {0.001, "millimetres"},
                                      {0.0254, "inches"},
                                      {0.056444, "CMU units of 5.64 cm"}}};
 
-/// The unit in which the hip height comes nearest to an adult's 0.9 m, which is 0.53 of a stature
-/// of 1.7 m (Drillis and Contini, 1964).
+/// The unit for which the height of the hips is nearest to 0.9 m. This is 0.53 of a stature of 1.7
+/// m (Drillis and Contini, 1964).
 const Unit& best_unit(double hip_in_units) {
   const Unit* best = units.data();
-  // The unit nearest to 0.9 m wins; of two equal ones the first.
+  // If two units are equally near, the first one is used.
   for (const Unit& unit : units) {
     const auto off = [hip_in_units](const Unit& u) {
       return std::abs(hip_in_units * u.metres - 0.9);
@@ -57,12 +57,12 @@ const Unit& best_unit(double hip_in_units) {
   return *best;
 }
 
-// The components of a vector that can be up.
+// The components of a vector that may point up.
 constexpr int y = 1, z = 2;
 
-/// True if the person stands upright in the first row, false if the person lies. y is up. A
-/// standing person, even with spread arms, is narrow along z; a lying person is low along y. Empty
-/// if neither holds.
+/// True if the person stands in the first row, false if the person lies, empty if neither is clear.
+/// The up axis is y. A standing person is narrow along z, even with spread arms. A lying person is
+/// low along y.
 std::optional<bool> stands(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
                            std::span<const double> rows, const BvhOptions& options) {
   if (rows.empty()) return std::nullopt;
@@ -73,7 +73,7 @@ std::optional<bool> stands(const BvhHierarchy& hierarchy, const Skeleton& skelet
   Eigen::AlignedBox3d box;
   for (std::size_t j = 0; j < skeleton.joints(); ++j) box.extend(Vec3(vec3(positions, j)));
   const Vec3 size = box.sizes();
-  // Half leaves a margin: a pose that is neither clearly high nor clearly low decides nothing.
+  // The factor 0.5 leaves a margin, so that an unclear pose gives no result.
   if (size.y() < 0.5 * size.z()) return false;
   if (size.z() < 0.5 * size.y()) return true;
   return std::nullopt;
@@ -91,7 +91,7 @@ Finding lying(std::string_view name, const std::string& expected, const std::str
 Findings judge_size(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
                     std::span<const double> rows, const BvhOptions& options,
                     std::string_view name) {
-  constexpr std::size_t body = 10;  // fewer joints are not a whole person
+  constexpr std::size_t body = 10;  // with fewer joints it is not a whole person
   Findings findings;
   if (skeleton.joints() < body) return findings;
   const Eigen::AlignedBox3d rest = rest_box(skeleton);
@@ -100,7 +100,7 @@ Findings judge_size(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
   const bool rest_lies = rest.sizes()[up] < 0.5 * rest.sizes()[other];
   const auto standing = stands(hierarchy, skeleton, rows, options);
   const std::string_view axes = "xyz";
-  // The rest pose lies, and no frame shows a person who stands.
+  // The rest pose lies, and the first frame does not show a standing person.
   if (rest_lies && !standing.value_or(false)) {
     findings.push_back(lying(name, fmt::format("a rest pose that is upright along {}", axes[up]),
                              fmt::format("a pose that is upright along {}", axes[other]),
@@ -110,9 +110,10 @@ Findings judge_size(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
         name, fmt::format("a first frame that is upright along {}, like the rest pose", axes[up]),
         fmt::format("a pose that is upright along {}", axes[other]), axes[other]));
   }
-  // If the rest pose lies along the other axis, its height is measured there.
+  // If the rest pose stands along the other axis, its height is measured along that axis.
   if (rest_lies) up = other;
-  // The box begins at the root, so its lower end is the height of the hips above the lowest joint.
+  // The root is at the origin of the box, so the box's lower end gives the height of the hips above
+  // the lowest joint.
   const double hip = -rest.min()[up];
   if (hip < 0.6 || hip > 1.3) {
     const Unit& unit = best_unit(hip / options.metres_per_unit);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first pass over a BVH: hashes the file and counts its frames without parsing the numbers.
+// The first pass over a BVH file: hashes the file and counts its frames without parsing the
+// numbers.
 #include "kinalign/core/hash.h"
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/formats/bvh/head.h"
@@ -14,14 +15,14 @@ namespace kinalign {
 
 namespace {
 
-/// Number of words that begin in [at, end); at[-1] must be readable.
-/// A word begins after a blank. The text before `at` decides about its first character.
+/// The number of words that begin in [at, end). A word begins after a blank, so at[-1] must be
+/// readable, too.
 KA_EVERY_PROCESSOR
 std::uint64_t words_begun(const char* at, const char* end) {
   std::uint64_t words = 0;
   while (at < end) {
-    // Counts in single bytes, which the vector unit adds 16 or more at a time; 255 characters can't
-    // overflow them.
+    // The counter has one byte, because the vector unit adds 16 or more bytes at a time. 255
+    // characters can't overflow it.
     const char* stop = at + std::min<std::ptrdiff_t>(end - at, 255);
     unsigned char some = 0;
     for (; at < stop; ++at) {
@@ -34,8 +35,8 @@ std::uint64_t words_begun(const char* at, const char* end) {
   return words;
 }
 
-/// Counts the words of a text that comes in pieces.
-/// last_ joins the pieces: a word that is cut between two pieces counts once.
+/// Counts the words of a text that arrives in pieces. last_ connects the pieces, so that a word
+/// with a cut in it counts once.
 class WordCount {
  public:
   void add(std::string_view piece) {
@@ -53,49 +54,50 @@ class WordCount {
   std::uint64_t words_ = 0;
 };
 
-/// Result of the counting pass.
+/// The result of the counting pass.
 struct Counted {
   BvhHierarchy hierarchy;
   Findings findings;
   InputFacts facts;
-  /// Empty if the row is not complete within the rows' first piece or 64 KiB.
+  /// The first row; empty if it is not complete within the first piece of rows or within 64 KiB.
   std::vector<double> first_row;
-  /// The words are those of the promised number of frames, and the last word has ended.
-  /// If so, the number of frames is known without parsing the numbers.
+  /// True if the number of words fits the stated number of frames and the last word has ended. The
+  /// numbers then need not be parsed.
   bool kept = false;
 };
 
-/// The first row of a text that begins with that row; empty if it is incomplete.
+/// The first row of a text that begins with this row; empty if the row is incomplete.
 std::vector<double> first_row(std::string_view text, const std::string& path, std::size_t size) {
-  // The row alone is wanted, so one frame is promised and later faults do not matter.
+  // Only one frame is requested, so later faults do not matter.
   BvhRows rows({path, size, 1, 1});
-  Findings ignored;  // faults after the row
+  Findings ignored;  // faults after the first row
   if (!rows.feed(text, ignored) || !rows.finish(ignored) || rows.frames_read() == 0) return {};
   return {rows.frames().begin(), rows.frames().begin() + static_cast<std::ptrdiff_t>(size)};
 }
 
-/// Collects the text after a head, which comes in pieces.
+/// Collects the text after a head. The text arrives in pieces.
 struct RowsText {
   WordCount words;
-  std::string start;  // beginning of the text
+  std::string start;  // the beginning of the text
 
   void add(std::string_view piece) {
-    constexpr std::size_t longest_start = 64 * 1024;  // long enough for a row of 3,000 joints
+    constexpr std::size_t longest_start = 64 * 1024;  // enough for a row of 3,000 joints
     words.add(piece);
     if (start.size() < longest_start) start += piece;
   }
 
-  /// True if the number of words is that of the frames that the head promises.
+  /// True if the number of words fits the number of frames in the head.
   bool keeps(const BvhHierarchy& head) const {
-    // A row with a wrong word passes this test; the reader finds it in the next pass.
+    // A row with a word that is not a number passes this test. The reader finds it in the next
+    // pass.
     const std::uint64_t row_size = head.row_size();
     return row_size > 0 && !words.within_word() && words.words() % row_size == 0 &&
            words.words() / row_size == head.frames;
   }
 };
 
-/// Reads the whole file once: hash, head, number of words, first row.
-/// The numbers are not parsed here; later passes do that.
+/// Reads the whole file once for hash, head, number of words and first row. Later passes parse the
+/// numbers.
 Result<Counted> count(FileSystem& files, const std::string& path, const Progress& progress) {
   InputFile file = KA_TRY(InputFile::open(files, path));
   Counted out;
@@ -112,7 +114,7 @@ Result<Counted> count(FileSystem& files, const std::string& path, const Progress
     if (in_rows) {
       rows.add(piece);
     } else if (KA_TRY(head.add(piece, out.findings))) {
-      // The piece in which the head ends also holds the first rows.
+      // The piece that completes the head also contains the first rows.
       rows.add(head.rows());
       in_rows = true;
     }
@@ -126,8 +128,8 @@ Result<Counted> count(FileSystem& files, const std::string& path, const Progress
   return out;
 }
 
-/// Stamps of `frames` frames at an even step, computed without reading them.
-/// The file has a fixed step, so nothing else is needed for them.
+/// The stamps of `frames` frames with a fixed frame time. They are computed without reading the
+/// frames.
 StampSurvey survey_of(const BvhOptions& options, double step_ns, std::uint64_t frames) {
   StampSurvey survey;
   survey.samples = frames;
@@ -138,7 +140,7 @@ StampSurvey survey_of(const BvhOptions& options, double step_ns, std::uint64_t f
   return survey;
 }
 
-/// Parses all numbers of a file whose word count does not fit its head. Faults fail or become
+/// Parses all numbers of a file whose count of words does not fit its head. Faults are errors or
 /// findings.
 Result<ClipSurvey> read_all(FileSystem& files, const std::string& path, const BvhOptions& options,
                             const Progress& progress) {
@@ -166,7 +168,7 @@ Result<ClipSurvey> survey_bvh(FileSystem& files, const std::string& path, const 
                               const Progress& progress) {
   Counted counted = KA_TRY(count(files, path, progress));
   ClipSurvey out;
-  // If the words and the head disagree, only parsing tells what the file holds.
+  // If the number of words does not fit the head, all numbers are parsed.
   if (!counted.kept) {
     out = KA_TRY(read_all(files, path, options, progress));
   } else {

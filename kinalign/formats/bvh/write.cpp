@@ -28,7 +28,7 @@ void put_offset(std::string& text, const std::string& indent, const Vec3& offset
   text += '\n';
 }
 
-/// Writes the hierarchy as text, without recursion, because a chain of joints may be deep.
+/// Writes the hierarchy as text. It uses no recursion, because a chain of joints may be long.
 class HierarchyText {
  public:
   explicit HierarchyText(const BvhHierarchy& h) : h_(h) {}
@@ -36,7 +36,8 @@ class HierarchyText {
   std::string text() {
     text_ = "HIERARCHY\n";
     for (std::size_t j = 0; j < h_.names.size(); ++j) {
-      // Joints come nested, so closing down to the parent closes all joints between.
+      // Joints are in nested order. Closing all braces down to the parent closes the joints in
+      // between.
       close_down_to(h_.parents[j]);
       open(j);
     }
@@ -59,7 +60,8 @@ class HierarchyText {
     text_ += '\n';
   }
 
-  /// Closes the braces of all open joints below `parent`. A joint's end sites come last in it.
+  /// Closes the braces of all open joints below `parent`. End sites are written at the end of their
+  /// joint.
   void close_down_to(int parent) {
     while (!open_.empty() && open_.back() != parent) {
       for (const EndSite& site : h_.end_sites) {
@@ -80,30 +82,30 @@ class HierarchyText {
 
 constexpr double centimetres = 100.0;
 
-/// Angles a, b, c in degrees with rotation = Rz(a) Rx(b) Ry(c).
+/// The angles a, b, c in degrees for which rotation = Rz(a) Rx(b) Ry(c).
 std::array<double, 3> zxy_angles(const Quat& rotation) {
   const Eigen::Matrix3d r = rotation.normalized().toRotationMatrix();
   constexpr double degrees = 180.0 / std::numbers::pi;
-  // Rounding may put a sine slightly outside of its range.
+  // Rounding errors may put the sine slightly out of its range.
   const double sin_x = std::clamp(r(2, 1), -1.0, 1.0);
-  if (std::abs(sin_x) > 1.0 - 1e-12) {  // z and y then turn about one axis: z gets the whole turn
+  if (std::abs(sin_x) > 1.0 - 1e-12) {  // z and y rotate about the same axis, so z gets both angles
     return {std::atan2(r(1, 0), r(0, 0)) * degrees, std::asin(sin_x) * degrees, 0.0};
   }
-  // Elements of R = Rz(a) Rx(b) Ry(c), solved for the three angles.
+  // The elements of R = Rz(a) Rx(b) Ry(c) are solved for the angles.
   return {std::atan2(-r(0, 1), r(1, 1)) * degrees, std::asin(sin_x) * degrees,
           std::atan2(-r(2, 0), r(2, 2)) * degrees};
 }
 
-/// Order of joints in which each joint is directly followed by all joints below it. Siblings keep
+/// An order of joints in which all descendants of a joint directly follow the joint. Siblings keep
 /// their order.
 std::vector<std::size_t> nested_order(const std::vector<int>& parents) {
-  std::vector<std::vector<std::size_t>> children(parents.size() + 1);  // the last element: roots
-  // From the last to the first, so that the stack below gives the first child first.
+  std::vector<std::vector<std::size_t>> children(parents.size() + 1);  // last element: the roots
+  // The loop runs backwards, so that the stack below takes the first child first.
   for (std::size_t j = parents.size(); j-- > 0;) {
     children[parents[j] < 0 ? parents.size() : static_cast<std::size_t>(parents[j])].push_back(j);
   }
   std::vector<std::size_t> order;
-  std::vector<std::size_t> open = children.back();  // the next joint comes last
+  std::vector<std::size_t> open = children.back();  // a stack: the last element is the next joint
   while (!open.empty()) {
     order.push_back(open.back());
     open.pop_back();
@@ -113,7 +115,7 @@ std::vector<std::size_t> nested_order(const std::vector<int>& parents) {
   return order;
 }
 
-/// A pass over the file, with the texts of its progress reports.
+/// The data for one pass over the file, and the texts of its progress reports.
 struct CopyPass {
   FileSystem& files;
   const std::string& path;
@@ -121,8 +123,8 @@ struct CopyPass {
   std::string_view what;
 };
 
-/// Feeds a whole file to `values` and calls `use()` after each piece.
-/// Both passes of copy_bvh() use it: the first counts, the second writes.
+/// Passes a whole file to `values`, and calls `use()` after each piece. Both passes of copy_bvh()
+/// call this function: the first one counts, and the second one writes.
 template <class Use>
 Result<Findings> feed_file(const CopyPass& pass, BvhValues& values, Use&& use) {
   const std::string& path = pass.path;
@@ -132,7 +134,7 @@ Result<Findings> feed_file(const CopyPass& pass, BvhValues& values, Use&& use) {
   std::uint64_t bytes = 0;
   for (;;) {
     const std::string_view piece = KA_TRY(file.next());
-    // The first piece tells whether the file is a BVH at all.
+    // The first piece shows whether the file is a BVH file.
     if (std::exchange(first, false) && !looks_like_bvh(piece)) {
       return Failure(
           Error{path, 1, "a BVH or a take (other files can't become a BVH)", beginning_of(piece)});
@@ -144,7 +146,7 @@ Result<Findings> feed_file(const CopyPass& pass, BvhValues& values, Use&& use) {
     if (!go_on(pass.progress, pass.what, bytes, file.size())) return Failure(interruption(path));
   }
   KA_TRY(values.finish(findings));
-  // The last frames may become complete at the end only.
+  // The last frame may become complete only at the end of the file.
   KA_TRY(use());
   return findings;
 }
@@ -163,7 +165,8 @@ BvhWriter::BvhWriter(const BvhHierarchy& hierarchy, std::uint64_t frames, int de
 Result<void> BvhWriter::append(std::span<const double> values) {
   constexpr std::size_t piece = std::size_t{256} << 10;
   std::array<char, number_room> room{};
-  // A row is written whole. The sink gets large pieces, because each call may be a system call.
+  // Rows are written completely. The sink receives large pieces, because each call may be a system
+  // call.
   for (std::size_t i = 0; i + row_size_ <= values.size() && row_size_ > 0; i += row_size_) {
     for (std::size_t c = 0; c < row_size_; ++c) {
       if (c > 0) text_ += ' ';
@@ -179,7 +182,7 @@ Result<void> BvhWriter::append(std::span<const double> values) {
 }
 
 Result<void> BvhWriter::finish() {
-  // The promised number stands in the file already, so another number would make it wrong.
+  // The head already contains the number of frames, so another number would make the file wrong.
   if (written_ == frames_) return sink_(text_);
   return refuse(fmt::format("{} frames to write", frames_), std::to_string(written_));
 }
@@ -202,21 +205,21 @@ void BvhChannels::see(std::span<const double> local_positions) {
   for (std::size_t i = 0; 3 * i < local_positions.size(); ++i) {
     const std::size_t j = i % joints;
     if (moves_[j]) continue;
-    // Less than a micrometre is rounding.
+    // Smaller movements are rounding errors.
     moves_[j] = (Vec3(vec3(local_positions, i)) - skeleton_.rest_offsets[j]).norm() > 1e-6;
   }
 }
 
 BvhHierarchy BvhChannels::hierarchy(std::uint64_t frames, double frame_seconds) const {
   BvhHierarchy h;
-  std::vector<int> place(skeleton_.joints());  // index of each joint in the order of writing
+  std::vector<int> place(skeleton_.joints());  // position of each joint in the order of the file
   for (const std::size_t j : order_) {
     const int parent = skeleton_.parents[j];
     place[j] = static_cast<int>(h.names.size());
     h.names.push_back(skeleton_.joint_names[j]);
     h.parents.push_back(parent < 0 ? -1 : place[static_cast<std::size_t>(parent)]);
     h.offsets.emplace_back(skeleton_.rest_offsets[j] * centimetres);
-    // X, Y, Z position, then rotations Z, X, Y, as motion suits write them.
+    // Position X, Y, Z, then rotations Z, X, Y, as in the files of motion suits.
     h.channels.push_back(has_position(j) ? std::vector<Channel>{0, 1, 2, 5, 3, 4}
                                          : std::vector<Channel>{5, 3, 4});
   }
@@ -233,7 +236,8 @@ BvhHierarchy BvhChannels::hierarchy(std::uint64_t frames, double frame_seconds) 
 void BvhChannels::append(std::span<const double> local_positions,
                          std::span<const double> local_rotations,
                          std::vector<double>& values) const {
-  // Rounds to the six decimals of the file, so that the text holds exactly these values.
+  // The values are rounded to the file's six decimals, so that the text contains exactly these
+  // values.
   const auto keep = [&values](double value) {
     values.push_back(std::nearbyint(value * 1e6) / 1e6);
   };
@@ -261,7 +265,7 @@ BvhFile bvh_from_clip(Clip clip, double frame_seconds) {
 
 Result<Findings> copy_bvh(FileSystem& files, const std::string& from, const FileSink& sink,
                           const Progress& progress) {
-  // A file that changes between the passes would give a wrong number of frames.
+  // If the file changed between the passes, its number of frames could be wrong.
   const auto version = version_of(from);
   BvhValues counted(from);
   counted.count_decimals = true;

@@ -15,22 +15,23 @@ namespace kinalign {
 
 namespace {
 
-/// VAX F format: sign, 8 bits of exponent, 23 bits of fraction, in two little-endian halves, the
-/// upper half first. The value is 0.1fraction * 2^(exponent - 128).
+/// Reads a number in VAX F format: sign, 8 bits of exponent and 23 bits of fraction, in two
+/// little-endian halves, the upper half first. The value is 0.1fraction (binary) * 2^(exponent -
+/// 128).
 double vax_f32(const std::uint8_t* at) {
-  // The halves are swapped: bytes 1 and 0 are the upper ones.
+  // The halves are swapped: bytes 1 and 0 are the upper half.
   const std::uint32_t bits =
       static_cast<std::uint32_t>(at[1]) << 24 | at[0] << 16 | at[3] << 8 | at[2];
   const int exponent = static_cast<int>(bits >> 23 & 0xff);
-  // An exponent of 0 means 0, whatever the fraction is.
+  // If the exponent is 0, the number is 0.
   if (exponent == 0) return 0.0;
   const double fraction = std::ldexp(static_cast<double>(bits & 0x7f'ffff), -24) + 0.5;
   const double value = std::ldexp(fraction, exponent - 128);
   return (bits >> 31) != 0 ? -value : value;
 }
 
-/// Reads bytes and numbers from the front of the section.
-/// The caller asks has() before it reads.
+/// Reads bytes and numbers from the front of the section. The caller must call has() before it
+/// reads.
 class Entries {
  public:
   Entries(std::span<const std::uint8_t> section, C3dProcessor processor)
@@ -57,11 +58,11 @@ class Entries {
  private:
   std::span<const std::uint8_t> section_;
   C3dProcessor processor_;
-  // The section's own header has four bytes.
+  // The section begins with a header of four bytes.
   std::size_t at_ = 4;
 };
 
-/// Programs write names in either case; C3D does not tell them apart.
+/// C3D does not distinguish upper and lower case in names, and programs write both.
 std::string in_capitals(std::span<const std::uint8_t> bytes) {
   std::string out;
   for (const std::uint8_t byte : bytes) {
@@ -71,13 +72,13 @@ std::string in_capitals(std::span<const std::uint8_t> bytes) {
   return out;
 }
 
-/// The type's number is its size in bytes; a text has -1.
+/// The absolute value of the type's number is its size in bytes; a text has -1.
 std::size_t size_of(C3dType type) {
   return static_cast<std::size_t>(std::abs(static_cast<int>(type)));
 }
 
-/// Reads type, dimensions and values. False if the type is unknown or the values reach beyond the
-/// section.
+/// Reads type, dimensions and values. Returns false if the type is unknown or the values extend
+/// beyond the section.
 bool take_values(Entries& entries, C3dParameter& out) {
   if (!entries.has(2)) return false;
   const int type = entries.i8();
@@ -89,7 +90,7 @@ bool take_values(Entries& entries, C3dParameter& out) {
   for (const std::uint8_t dimension : entries.bytes(dimensions)) {
     out.dimensions.push_back(dimension);
     count *= dimension;
-    // A product beyond the section can't be right, and going on could overflow.
+    // A product larger than the section is wrong. Further products could overflow.
     if (count > entries.size()) return false;
   }
   const std::size_t bytes = count * size_of(out.type);
@@ -99,30 +100,31 @@ bool take_values(Entries& entries, C3dParameter& out) {
   return true;
 }
 
-constexpr std::size_t most_parameters = 10'000;  // programs write some hundreds
+constexpr std::size_t most_parameters = 10'000;  // usual files have some hundreds
 
-/// Names of groups by their id. They are collected, because a group may come after its parameters.
+/// The names of groups by id. They are collected first, because a group may come after its
+/// parameters.
 struct Groups {
   std::map<int, std::string> names;
-  /// group id of each parameter
+  /// The group id of each parameter.
   std::vector<int> of_parameter;
 };
 
 enum class Taken { entry, last, outside, bad_values };
 
-/// Reads one group or one parameter and moves on to the next entry.
+/// Reads one group or one parameter, and moves to the next entry.
 Taken take_entry(Entries& entries, Groups& groups, std::vector<C3dParameter>& parameters) {
   if (!entries.has(2)) return Taken::last;
-  // A negative length marks a locked name.
+  // A negative length means that the name is locked.
   const auto length = static_cast<std::size_t>(std::abs(entries.i8()));
   const int id = entries.i8();
   if (length == 0) return Taken::last;
   if (!entries.has(length + 2)) return Taken::outside;
   std::string name = in_capitals(entries.bytes(length));
-  // The distance counts from this field, not from the entry's begin.
+  // The offset counts from this field, and not from the beginning of the entry.
   const std::size_t offset_at = entries.at();
   const std::size_t offset = entries.u16();
-  // A negative id is that of a group, a positive one that of the parameter's group.
+  // A negative id belongs to a group. A positive id belongs to a parameter and names its group.
   if (id < 0) {
     groups.names[-id] = std::move(name);
   } else {
@@ -130,19 +132,19 @@ Taken take_entry(Entries& entries, Groups& groups, std::vector<C3dParameter>& pa
     groups.of_parameter.push_back(id);
     if (!take_values(entries, parameters.back())) return Taken::bad_values;
   }
-  // Distance 0: the last entry.
+  // The offset 0 marks the last entry.
   if (offset == 0) {
     entries.go_to(entries.size());
     return Taken::entry;
   }
   const std::size_t next = offset_at + offset;
-  // A smaller distance would lead back and never end.
+  // With a smaller offset, reading would move backwards and never end.
   if (offset < 2 || next > entries.size()) return Taken::outside;
   entries.go_to(next);
   return Taken::entry;
 }
 
-/// Programs pad texts with blanks or with zeros.
+/// The text without blanks and zeros at its end, with which programs fill it.
 std::string_view trimmed_end(std::string_view text) {
   const auto last = text.find_last_not_of(std::string_view(" \0\t", 3));
   return text.substr(0, last == std::string_view::npos ? 0 : last + 1);
@@ -163,7 +165,7 @@ Result<C3dParameters> C3dParameters::parse(std::span<const std::uint8_t> section
   const auto refuse = [&](const std::string& expected, std::size_t at) {
     return kinalign::refuse(file, expected, fmt::format("another at byte {}", section_at + at));
   };
-  // Byte 3 names the processor, 83 + its number.
+  // Byte 3 names the processor: 83 + its number.
   if (section.size() < 4 || section[3] < 84 || section[3] > 86) {
     return refuse("a C3D parameter section of processor 84, 85 or 86", 3);
   }
@@ -185,7 +187,7 @@ Result<C3dParameters> C3dParameters::parse(std::span<const std::uint8_t> section
       return refuse(fmt::format("at most {} C3D parameters", most_parameters), entry);
     }
   }
-  // All groups are known now, also those that came after their parameters.
+  // The names of all groups are known now, even if a group came after its parameters.
   for (std::size_t i = 0; i < out.parameters_.size(); ++i) {
     out.parameters_[i].group = groups.names[groups.of_parameter[i]];
   }
@@ -207,7 +209,7 @@ std::optional<double> C3dParameters::number(std::string_view group, std::string_
   if (found->bytes.size() < (index + 1) * size) return std::nullopt;
   const std::uint8_t* at = &found->bytes[index * size];
   if (found->type == C3dType::byte) return *at;
-  // Counts above 32,767 are stored in the same field, so it is read as unsigned.
+  // Counts above 32,767 are stored in the same field, so the field is read as unsigned.
   if (found->type == C3dType::i16) return c3d_u16(processor_, at);
   return c3d_f32(processor_, at);
 }
@@ -226,7 +228,8 @@ std::vector<std::string> C3dParameters::texts(std::string_view group, std::strin
   return out;
 }
 
-// One parameter holds at most 255 texts, so programs continue in NAME2, NAME3, ...
+// A parameter contains at most 255 texts, so programs use further parameters NAME2, NAME3 and so
+// on.
 std::vector<std::string> C3dParameters::all_texts(std::string_view group,
                                                   std::string_view name) const {
   std::vector<std::string> out = texts(group, name);

@@ -9,7 +9,7 @@ namespace kinalign {
 
 namespace {
 
-// Numbers beyond this can't be an index; a double still represents each whole number up to it.
+// A larger number is not an index. A double represents all whole numbers up to this limit exactly.
 constexpr double largest_index = 1e12;
 
 bool is_index(double x) { return x >= 0.0 && x < largest_index && x == std::floor(x); }
@@ -17,46 +17,46 @@ bool is_index(double x) { return x >= 0.0 && x < largest_index && x == std::floo
 }  // namespace
 
 Result<void> MvnxStamps::begin(const MvnxHead& head, const MvnxFrame& frame) {
-  // The user's rate has priority.
+  // The user's rate has priority over the rate in the file.
   rate_hz_ = options_.rate_hz > 0.0 ? options_.rate_hz : head.rate_hz;
   if (!(rate_hz_ >= 1e-3) || !(rate_hz_ <= 1e6)) {
     return refuse("a frameRate of 0.001 to 1,000,000 Hz, or rate_hz",
                   head.rate_hz == 0.0 ? "none" : fmt::format("{}", head.rate_hz));
   }
-  // A file may begin with any index.
+  // The indices of a file may begin with any number.
   first_index_ = frame.index.value_or(0.0);
   first_ms_ = frame.ms.value_or(0.0);
   constexpr double largest_ms = 1e-6 * static_cast<double>(largest_stamp_ns);
   const double unix_ms = frame.unix_ms.value_or(0.0);
-  // A time of day beyond our range is left out rather than wrong.
+  // A time of day out of range is ignored.
   const double start_ms = std::abs(unix_ms) < largest_ms ? unix_ms : 0.0;
   start_ns_ = options_.start_ns.value_or(std::llround(start_ms) * 1'000'000);
   return {};
 }
 
 Result<std::optional<Time>> MvnxStamps::next(const MvnxHead& head, const MvnxFrame& frame) {
-  // Without an index the frames are counted.
+  // Frames without an index are counted.
   const double index = frame.index.value_or(last_index_ + 1.0);
   if (!is_index(index)) {
     return refuse("a frame's index", fmt::format("{}", index));
   }
-  // The first frame sets rate, index and start.
+  // The first frame determines rate, index and start.
   if (!first_index_) KA_TRY(begin(head, frame));
   if (index <= last_index_) {
     ++not_rising_;
     return std::optional<Time>();
   }
-  // A leap in the index: frames that the file does not have.
+  // If the index jumps ahead, the file lacks the frames in between.
   if (last_index_ >= 0.0) missing_ += static_cast<std::uint64_t>(index - last_index_ - 1.0);
   last_index_ = index;
   const double since = index - *first_index_;
-  // Compared only: the stamps come from the index.
+  // The file's times are only compared, because the stamps come from the index.
   if (frame.ms) {
     const double off = 1e-3 * (*frame.ms - first_ms_) - since / rate_hz_;
     largest_off_s_ = std::max(largest_off_s_, std::abs(off));
   }
   std::int64_t ns = 0;
-  // The sum may overflow although both parts are within range.
+  // The sum may overflow although both terms are in range.
   const bool overflow = __builtin_add_overflow(
       start_ns_, stamp_at_rate(static_cast<std::uint64_t>(since), rate_hz_), &ns);
   if (overflow || ns > largest_stamp_ns || ns < -largest_stamp_ns) {
@@ -76,8 +76,8 @@ void MvnxStamps::report(const std::string& file, Findings& findings) const {
     add_note(findings, {file, 0, "every frame index", fmt::format("{} missing indices", missing_)},
              "the missing frames are a gap");
   }
-  // Milliseconds are rounded, by up to half a millisecond at each end.
-  // The tolerance: one millisecond for rounding, and one and a half frames.
+  // The file's milliseconds are rounded by up to half a millisecond. The tolerance is one
+  // millisecond for the rounding of two times, and one and a half frames.
   if (largest_off_s_ > 0.001 + 1.5 / std::max(rate_hz_, 1e-3)) {
     add_warning(findings,
                 {file, 0, fmt::format("times of frameRate {:g}", rate_hz_),

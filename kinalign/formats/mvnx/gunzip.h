@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Unpacks a gzip file (RFC 1952) in pieces.
+// Decompresses a gzip file (RFC 1952) in pieces.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -14,7 +14,7 @@ namespace kinalign {
 
 bool looks_like_gzip(std::string_view head);
 
-/// Several archives may follow each other; their texts belong together.
+/// Decompresses the bytes of a file. If the file contains several archives, their texts are joined.
 class Gunzip {
  public:
   Gunzip();
@@ -22,8 +22,8 @@ class Gunzip {
   Gunzip(const Gunzip&) = delete;
   Gunzip& operator=(const Gunzip&) = delete;
 
-  /// Calls `use(text)` for pieces of at most 64 KiB. Fails, without a place, if the bytes are
-  /// damaged or if `use` fails.
+  /// Calls `use(text)` for pieces of at most 64 KiB. Fails if the bytes are damaged or if `use`
+  /// fails. The caller adds the file to the error.
   Result<void> feed(std::string_view piece,
                     const std::function<Result<void>(std::string_view)>& use);
 
@@ -33,7 +33,7 @@ class Gunzip {
  private:
   z_stream stream_{};
   bool complete_ = false;
-  std::array<char, std::size_t{64} << 10> text_{};  // unpacked
+  std::array<char, std::size_t{64} << 10> text_{};  // buffer for the decompressed text
 };
 
 }  // namespace kinalign

@@ -17,45 +17,44 @@ namespace kinalign {
 
 namespace {
 
-/// Global positions, m, and rotations of all segments in our axes. A segment's own axes are turned
-/// like the space, so that a segment at rest has no rotation.
+/// Positions (m) and rotations of all segments in the world, in kinalign's axes. The axes of the
+/// segments are converted like those of the world, so a segment at rest has no rotation.
 struct GlobalPose {
   std::vector<Vec3> places;
   std::vector<Quat> turns;
 };
 
-/// Turn and scale from the file's axes and unit to ours.
+/// The conversion from the file's axes and unit to kinalign's.
 struct MvnxUnits {
   PointUnits units;
   Quat turn;
 
-  /// Lengths are in metres unless the user states another unit.
+  /// Lengths are in metres, unless the user gave another unit.
   explicit MvnxUnits(const StreamOptions& options)
       : units(point_units({z_up, 1.0}, options)), turn(rotation_of(units.axes)) {}
 
   Vec3 ours(const Vec3& file) const { return turned(units.axes, file.data()) * units.metres; }
 };
 
-/// The pose of a frame. Empty if the frame lacks a segment, or if a quaternion's length is not
-/// within 0.99 to 1.01.
+/// The pose of a frame. The result is empty if the frame lacks a segment, or if the length of a
+/// quaternion is not within 0.99 to 1.01.
 std::optional<GlobalPose> pose_of(const MvnxFrame& frame, std::size_t segments,
                                   const MvnxUnits& units) {
-  // A frame with fewer numbers lacks a segment.
+  // If the frame has fewer numbers, a segment is missing.
   if (frame.orientation.size() != 4 * segments || frame.position.size() != 3 * segments) return {};
   GlobalPose out;
   for (std::size_t k = 0; k < segments; ++k) {
     const Quat q = quat(frame.orientation, k);
-    // Rounded text is within 1 %; anything else is no rotation.
+    // Rounding in the text changes the length by less than 1 %. Any other length is not a rotation.
     if (!(std::abs(q.norm() - 1.0) <= 0.01)) return std::nullopt;
-    // T q T^-1 with T the turn of the axes: the same rotation, described in our axes.
+    // T q T^-1, where T converts the axes, is the same rotation in kinalign's axes.
     out.turns.push_back((units.turn * q * units.turn.conjugate()).normalized());
     out.places.push_back(units.ours(vec3(frame.position, k)));
   }
   return out;
 }
 
-/// The parent of each segment according to the joints; -1: a root.
-/// A segment that no joint names as child is a root.
+/// The parent of each segment; -1: a root. A segment is a root if it is the child of no joint.
 std::vector<int> parents_of(const MvnxHead& head) {
   const auto index = [&](const std::string& label) {
     const auto found = std::find_if(head.segments.begin(), head.segments.end(),
@@ -76,10 +75,9 @@ const MvnxPoint* point_named(const MvnxSegment& segment, const std::string& labe
   return found == segment.points.end() ? nullptr : &*found;
 }
 
-/// Offset from the parent's origin to the child's, in the file's axes, by the points that their
-/// joint connects. Empty if the file lacks the joint or one of the points.
-/// Both points are the same place in the world, seen from two segments. Their difference is
-/// constant.
+/// The offset from the parent's origin to the child's origin, in the file's axes. It is the
+/// difference of the two points that their joint connects, which are the same place in the world.
+/// The result is empty if the file lacks the joint or one of the points.
 std::optional<Vec3> offset_by_points(const MvnxHead& head, std::size_t child, std::size_t parent) {
   for (const MvnxJoint& joint : head.joints) {
     if (joint.child != head.segments[child].label || joint.parent != head.segments[parent].label) {
@@ -92,8 +90,8 @@ std::optional<Vec3> offset_by_points(const MvnxHead& head, std::size_t child, st
   return std::nullopt;
 }
 
-/// Global poses become local ones frame by frame. The skeleton is made at the first normal frame,
-/// when calibration poses have been seen.
+/// Converts global poses to local poses. The skeleton is made at the first normal frame, when the
+/// calibration poses are known.
 class MvnxReader final : public ClipReader {
  public:
   MvnxReader(const StreamOptions& options, std::string_view file)
@@ -102,13 +100,13 @@ class MvnxReader final : public ClipReader {
         document_(file, [this](const MvnxHead& head, const MvnxFrame& frame) {
           return use(head, frame);
         }) {}
-  // A callback in document_ holds the address of this object.
+  // A callback in document_ contains the address of this object.
   MvnxReader(const MvnxReader&) = delete;
   MvnxReader& operator=(const MvnxReader&) = delete;
   ~MvnxReader() override = default;
 
   Result<void> feed(std::string_view piece, ClipFrames& out) override {
-    // The document calls use() during feed(), which appends to out_.
+    // During feed(), document_ calls use(), which appends to out_.
     out_ = &out;
     return document_.feed(piece);
   }
@@ -134,10 +132,10 @@ class MvnxReader final : public ClipReader {
   const Skeleton* header() const override { return header_ ? &*header_ : nullptr; }
 
  private:
-  /// Called for each frame: keeps calibration poses, appends normal frames.
+  /// Called for each frame. Keeps calibration poses, and appends normal frames.
   Result<void> use(const MvnxHead& head, const MvnxFrame& frame) {
     const auto pose = pose_of(frame, head.segments.size(), units_);
-    // A calibration pose is kept and not appended.
+    // A calibration pose is kept but not appended.
     if (frame.type != "normal") {
       keep_rest(frame.type, pose);
       return {};
@@ -154,9 +152,9 @@ class MvnxReader final : public ClipReader {
     return {};
   }
 
-  /// Keeps a calibration pose as rest pose. The identity pose wins over a T-pose.
+  /// Keeps a calibration pose as rest pose. The identity pose is preferred to a T-pose.
   void keep_rest(const std::string& type, const std::optional<GlobalPose>& pose) {
-    // A T-pose is kept only while there is no other pose.
+    // A T-pose is kept only if no other pose is known.
     if (!pose || (rest_ && type != "identity")) return;
     rest_ = pose;
   }
@@ -166,34 +164,34 @@ class MvnxReader final : public ClipReader {
     if (head.segments.empty()) return refuse("segments before the frames", "none");
     Skeleton skeleton;
     skeleton.parents = parents_of(head);
-    // Without a calibration pose the first frame must serve.
+    // Without a calibration pose, the first frame serves as rest pose.
     const GlobalPose& rest = rest_ ? *rest_ : first;
     for (std::size_t k = 0; k < head.segments.size(); ++k) {
       skeleton.joint_names.push_back(head.segments[k].label);
       skeleton.rest_offsets.push_back(rest_offset(head, skeleton.parents[k], k, rest));
     }
     add_end_sites(head, skeleton);
-    // A joint may name a parent that comes later; such a skeleton is refused.
+    // validate() refuses a skeleton in which a parent comes after its child.
     KA_TRY(validate(skeleton));
     header_ = std::move(skeleton);
     return {};
   }
 
   Vec3 rest_offset(const MvnxHead& head, int parent, std::size_t k, const GlobalPose& rest) const {
-    // A root's offset is its place in the rest pose.
+    // A root's offset is its position in the rest pose.
     if (parent < 0) return rest.places[k];
     const auto p = static_cast<std::size_t>(parent);
-    // Points state the offset itself; a pose only shows it.
+    // The offset between points is exact. A pose only gives an estimate.
     if (const auto offset = offset_by_points(head, k, p)) return units_.ours(*offset);
     return rest.turns[p].conjugate() * (rest.places[k] - rest.places[p]);
   }
 
-  /// Gives each segment without children an end site: its first point whose label begins with p,
-  /// which is no joint. MVN lists the tips first.
+  /// Adds an end site to each segment without children: the segment's first point whose label
+  /// begins with p. Such a label means that the point is not a joint. MVN lists the tips first.
   void add_end_sites(const MvnxHead& head, Skeleton& skeleton) const {
     for (std::size_t k = 0; k < head.segments.size(); ++k) {
       const auto& parents = skeleton.parents;
-      // A segment with children ends where they begin.
+      // A segment with children needs no end site.
       if (std::find(parents.begin(), parents.end(), static_cast<int>(k)) != parents.end()) continue;
       for (const MvnxPoint& point : head.segments[k].points) {
         if (!point.label.starts_with('p')) continue;
@@ -210,7 +208,7 @@ class MvnxReader final : public ClipReader {
     out_->stamps.push_back(stamp);
     out_->local_positions.resize(3 * (first + segments));
     out_->local_rotations.resize(4 * (first + segments));
-    // parent^-1 * child gives place and rotation in the parent's space.
+    // parent^-1 * child is the position and rotation in the parent's space.
     for (std::size_t k = 0; k < segments; ++k) {
       Vec3 place = pose.places[k];
       Quat turn = pose.turns[k];
@@ -228,7 +226,7 @@ class MvnxReader final : public ClipReader {
   MvnxUnits units_;
   MvnxStamps stamps_;
   MvnxDocument document_;
-  ClipFrames* out_ = nullptr;  // target of the call in progress
+  ClipFrames* out_ = nullptr;  // the output during a call
   std::optional<GlobalPose> rest_;
   std::uint64_t incomplete_ = 0;
   std::optional<Skeleton> header_;
@@ -241,7 +239,7 @@ std::unique_ptr<ClipReader> make_mvnx_reader(const StreamOptions& options, std::
 }
 
 bool looks_like_mvnx(std::string_view head) {
-  // The root element stands within the first kilobytes.
+  // The root element is within the first kilobytes.
   constexpr std::size_t searched = 4096;
   constexpr std::string_view element = "<mvnx";
   if (!looks_like_gzip(head)) {
@@ -250,9 +248,9 @@ bool looks_like_mvnx(std::string_view head) {
                : false;
   }
   std::string text;
-  // A failure stops gunzip early; the text so far is all that is needed.
+  // gunzip may fail early. The text before the failure is enough.
   Gunzip gunzip;
-  // The unpacking stops at an error or once the text is long enough.
+  // The callback stops the decompression when the text is long enough.
   const auto unpacked =
       gunzip.feed(head.substr(0, searched), [&](std::string_view more) -> Result<void> {
         text += more.substr(0, searched);

@@ -13,7 +13,8 @@ namespace kinalign {
 
 namespace {
 
-/// The first normal frame decides on the quantities; later frames must have the same arrays.
+/// Reads sensors. The first normal frame determines the quantities, and later frames must have the
+/// same arrays.
 class MvnxSensorReader final : public ImuReader {
  public:
   MvnxSensorReader(const StreamOptions& options, std::string_view file)
@@ -22,7 +23,7 @@ class MvnxSensorReader final : public ImuReader {
         document_(file, [this](const MvnxHead& head, const MvnxFrame& frame) {
           return use(head, frame);
         }) {}
-  // A callback in document_ holds the address of this object.
+  // A callback in document_ contains the address of this object.
   MvnxSensorReader(const MvnxSensorReader&) = delete;
   MvnxSensorReader& operator=(const MvnxSensorReader&) = delete;
   ~MvnxSensorReader() override = default;
@@ -55,7 +56,8 @@ class MvnxSensorReader final : public ImuReader {
  private:
   Result<void> use(const MvnxHead& head, const MvnxFrame& frame) {
     if (frame.type != "normal") return {};
-    // Before the stamp: a file without sensors must fail even if its first index is wrong.
+    // The header comes before the stamp: a file without sensors must fail even if its first index
+    // is wrong.
     if (!header_) KA_TRY(begin(head, frame));
     const auto stamp = KA_TRY(stamps_.next(head, frame));
     if (!stamp) return {};
@@ -64,37 +66,38 @@ class MvnxSensorReader final : public ImuReader {
     return {};
   }
 
-  /// Decides, at the first normal frame, which quantities are read.
+  /// Decides at the first normal frame which quantities are read.
   Result<void> begin(const MvnxHead& head, const MvnxFrame& frame) {
     const std::size_t sensors = head.sensors.size();
-    // An array of another size can't be split among the sensors.
+    // An array of another size can't be divided among the sensors.
     const bool turn = sensors > 0 && frame.sensor_orientation.size() == 4 * sensors;
     const bool force = frame.sensor_acceleration.size() == 3 * sensors;
-    // Free acceleration needs the orientation, to bring it into the sensor's space.
+    // The orientation is needed to rotate a free acceleration into sensor space.
     free_ = !force && turn && frame.sensor_free_acceleration.size() == 3 * sensors;
     const bool rate = frame.sensor_angular_velocity.size() == 3 * sensors;
     if (sensors == 0 || !(turn || force || rate)) {
       return refuse("sensors with orientation, acceleration or angular velocity",
                     "no such sensors in the first frame");
     }
-    // The last value: the acceleration contains gravity.
+    // The last value says whether the acceleration contains gravity.
     header_ = ImuHeader{head.sensors, {turn, force || free_, rate, !free_}};
     return {};
   }
 
-  /// Appends a frame's sample of each sensor. All are invalid if an array is incomplete.
+  /// Appends one sample of each sensor. If an array is incomplete, all samples of the frame are
+  /// invalid.
   void append(const MvnxFrame& frame) {
     const std::size_t sensors = header_->node_names.size();
     const ImuContent& content = header_->content;
     const std::vector<double>& acceleration =
         free_ ? frame.sensor_free_acceleration : frame.sensor_acceleration;
-    // One incomplete array makes all samples of the frame invalid.
+    // If one array is incomplete, all samples of the frame are invalid.
     const bool whole =
         (!content.orientation || frame.sensor_orientation.size() == 4 * sensors) &&
         (!content.acceleration || acceleration.size() == 3 * sensors) &&
         (!content.angular_velocity || frame.sensor_angular_velocity.size() == 3 * sensors);
     incomplete_ += whole ? 0 : 1;
-    // An invalid sample needs pointers to something.
+    // An invalid sample needs valid pointers, too.
     constexpr double zeros[4] = {};
     for (std::size_t s = 0; s < sensors; ++s) {
       const auto of = [&](const std::vector<double>& array, std::size_t parts) {
@@ -105,7 +108,7 @@ class MvnxSensorReader final : public ImuReader {
       if (content.orientation) raw.orientation = of(frame.sensor_orientation, 4);
       if (content.angular_velocity) raw.angular_velocity = of(frame.sensor_angular_velocity, 3);
       if (content.acceleration) raw.acceleration = of(acceleration, 3);
-      // From global to the sensor's own space.
+      // Rotates the vector from the world to sensor space.
       if (free_ && whole) {
         local = quat(frame.sensor_orientation, s).normalized().conjugate() *
                 Vec3(vec3(acceleration, s));
@@ -118,8 +121,8 @@ class MvnxSensorReader final : public ImuReader {
   MvnxStamps stamps_;
   ImuConverter samples_;
   MvnxDocument document_;
-  ImuSamples* out_ = nullptr;  // target of the call in progress
-  bool free_ = false;          // accelerations are global and without gravity
+  ImuSamples* out_ = nullptr;  // the output during a call
+  bool free_ = false;          // the file's accelerations are global and exclude gravity
   std::uint64_t incomplete_ = 0;
   std::optional<ImuHeader> header_;
 };
