@@ -15,7 +15,7 @@ namespace kinalign {
 
 namespace {
 
-// The lists of BIDS 1.9.
+// The types in BIDS 1.9.
 constexpr std::array<std::string_view, 10> bids_types{
     "ACCEL", "ANGACCEL", "GYRO", "JNTANG", "LATENCY", "MAGN", "MISC", "ORNT", "POS", "VEL"};
 constexpr std::array<std::string_view, 8> bids_components{"x",      "y",      "z",      "quat_x",
@@ -37,7 +37,7 @@ struct Unit {
   double scale;
 };
 constexpr double degree = std::numbers::pi / 180.0;
-// The units that are accepted. A type may have several.
+// The accepted units. A type may have several units.
 constexpr std::array<Unit, 17> bids_units{{{"POS", "m", 1.0},
                                            {"POS", "cm", 0.01},
                                            {"POS", "mm", 0.001},
@@ -56,8 +56,8 @@ constexpr std::array<Unit, 17> bids_units{{{"POS", "m", 1.0},
                                            {"LATENCY", "s", 1.0},
                                            {"LATENCY", "seconds", 1.0}}};
 
-/// Adds the channels of one tracked point and one type.
-/// `like` has the fields that all channels of the type share.
+/// Adds the channels of one tracked point and one type. `like` contains the fields that all
+/// channels of the type have in common.
 template <std::size_t n>
 void add(const std::string& point, const std::array<const char*, n>& parts, const BidsChannel& like,
          std::vector<BidsChannel>& out) {
@@ -90,15 +90,15 @@ void add_channels(const PointHeader& points, std::vector<BidsChannel>& out) {
 
 void add_channels(const ImuHeader& nodes, std::vector<BidsChannel>& out) {
   for (const std::string& node : nodes.node_names) {
-    // Vectors of a sensor stay in its own space: "sensor". Only orientations are global.
+    // Vectors of a sensor stay in its own space ("sensor"). Only orientations are global.
     if (nodes.content.orientation) add(node, bids_quaternion, kind("ORNT", "n/a", "global"), out);
     if (nodes.content.acceleration) add(node, bids_axes, kind("ACCEL", "m/s^2", "sensor"), out);
     if (nodes.content.angular_velocity) add(node, bids_axes, kind("GYRO", "rad/s", "sensor"), out);
   }
 }
 
-/// The direction of a letter in a right-handed space: x to the right, y forwards, z up.
-/// BIDS names directions as a person sees them: right, anterior (forwards), superior (up).
+/// The direction of a letter in a right-handed space with x to the right, y forwards and z up. BIDS
+/// names directions from the person's view: right, anterior (forwards), superior (up).
 std::optional<Vec3> direction(char letter) {
   switch (letter) {
     case 'R':
@@ -121,7 +121,7 @@ std::optional<Vec3> direction(char letter) {
 }  // namespace
 
 std::vector<BidsChannel> bids_channels(const BidsSource& source) {
-  // The latency belongs to no tracked point.
+  // The latency channel does not belong to a tracked point.
   std::vector<BidsChannel> out{{"latency", "n/a", "LATENCY", "n/a", "s", "n/a", "n/a"}};
   std::visit([&out](const auto& one) { add_channels(one, out); }, source);
   return out;
@@ -154,7 +154,7 @@ TsvTable channels_table(std::span<const BidsChannel> channels) {
   return out;
 }
 
-// Members by name, so that the columns may stand in any order.
+// Reads each row by the names of the columns, because the columns may have any order.
 Result<std::vector<BidsChannel>> channels_of(const TsvTable& table, std::string_view file) {
   std::vector<BidsChannel> out(table.rows.size());
   for (std::size_t f = 0; f < channel_columns.size(); ++f) {
@@ -191,9 +191,9 @@ double unit_scale(std::string_view type, std::string_view unit) {
 std::optional<Axes> axes_of_letters(std::string_view letters) {
   if (letters.size() != 3) return std::nullopt;
   Eigen::Matrix3d directions = Eigen::Matrix3d::Zero();
-  // `all`: every letter names a direction, so the handedness is known.
+  // True if each letter names a direction. The handedness is then known.
   bool all = true;
-  int up = 0;  // number of the axis that points up, from 1; negative: it points down
+  int up = 0;  // number of the axis that points up, from 1; negative: down
   for (int k = 0; k < 3; ++k) {
     const auto points_to = direction(letters[static_cast<std::size_t>(k)]);
     all = all && points_to.has_value();
@@ -201,16 +201,17 @@ std::optional<Axes> axes_of_letters(std::string_view letters) {
     directions.col(k) = *points_to;
     if (points_to->z() != 0.0) up = points_to->z() > 0.0 ? k + 1 : -(k + 1);
   }
-  // 0: two letters name the same axis, or one names none.
+  // The determinant is 0 if two letters name the same axis, or if a letter names no axis.
   const double hand = directions.determinant();
-  // Without a letter for up, the upward axis would be a guess.
+  // If no letter names the up axis, the axes are not known.
   if (up == 0 || (all && hand == 0.0)) return std::nullopt;
-  // For each upward axis a turn that brings it to our y and keeps the space right-handed.
+  // For each up axis, a rotation that makes it kinalign's y. A rotation keeps the space
+  // right-handed.
   constexpr std::array<Axes, 3> upwards{{{-2, 1, 3}, {1, 2, 3}, {1, 3, -2}}},
       downwards{{{2, -1, 3}, {1, -2, -3}, {1, -3, 2}}};
   const auto index = static_cast<std::size_t>(std::abs(up) - 1);
   Axes out = up > 0 ? upwards[index] : downwards[index];
-  // Mirroring one axis makes the space right-handed.
+  // Changing the sign of one axis makes a left-handed space right-handed.
   if (all && hand < 0.0) out[2] = -out[2];  // a left-handed space
   return out;
 }

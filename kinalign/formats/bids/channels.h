@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Channels of a tracking system: the rows of channels.tsv, one for each column of motion.tsv.
+// The channels of a tracking system. A channel is a row of channels.tsv and a column of motion.tsv.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -19,42 +19,43 @@
 
 namespace kinalign {
 
-/// All are texts as in channels.tsv. "n/a" stands for a field without a meaning.
+/// One channel. All fields are texts as in channels.tsv; "n/a" means that a field has no value.
 struct BidsChannel {
   std::string name, component, type, tracked_point, units, placement, reference_frame;
 };
 
-/// The header of a stream, from which its channels are made.
+/// The header of a stream. Its channels are made from it.
 using BidsSource = std::variant<Skeleton, PointHeader, ImuHeader>;
 
-// Components in the order of our arrays: x,y,z and w,x,y,z.
+// The components in the order of kinalign's arrays: x,y,z and w,x,y,z.
 inline constexpr std::array<const char*, 3> bids_axes{"x", "y", "z"};
 inline constexpr std::array<const char*, 4> bids_quaternion{"quat_w", "quat_x", "quat_y", "quat_z"};
 
-/// The channels of a stream. LATENCY comes first. Then follow POS and ORNT of a skeleton's joints,
-/// POS of points, or ORNT, ACCEL and GYRO of nodes as far as the stream has them. Positions and
-/// orientations use the reference frame "global", accelerations and angular velocities "sensor".
-/// The order is that of the columns of motion.tsv, so writer and table must use the same list.
+/// The channels of a stream, in the order of the columns in motion.tsv. LATENCY comes first. A
+/// skeleton has POS and ORNT for each joint, and points have POS. Nodes have ORNT, ACCEL and GYRO
+/// if the stream has these quantities. Positions and orientations have the reference frame
+/// "global". Accelerations and angular velocities have "sensor".
 std::vector<BidsChannel> bids_channels(const BidsSource& source);
 
-/// The counts of channels and of tracked points that motion.json states, with their keys.
+/// The counts of channels and of tracked points in motion.json, with their keys.
 std::vector<std::pair<std::string, std::size_t>> bids_counts(std::span<const BidsChannel> channels);
 
 TsvTable channels_table(std::span<const BidsChannel> channels);
-/// Reads the channels back. Fails if one of the first five columns is missing; `file` appears in
-/// messages.
-/// The last two columns are optional in BIDS; a channel without them has "n/a".
+/// Reads the channels in a table. `file` appears in messages. Fails if one of the first five
+/// columns is missing. The last two columns are optional in BIDS; without them the fields are
+/// "n/a".
 Result<std::vector<BidsChannel>> channels_of(const TsvTable& table, std::string_view file);
 
-/// True for a channel type of BIDS 1.9, in capitals.
+/// True for a channel type of BIDS 1.9 in upper case.
 bool is_bids_type(std::string_view type);
 bool is_bids_component(std::string_view component);
-/// Our units (m, rad, m/s2, ...) per `unit`; 0 if the type has no such unit.
-/// A value in the file times this factor is in our unit.
+/// The factor that converts a value in `unit` to kinalign's unit (m, rad, m/s2 and so on); 0 if the
+/// type does not allow this unit.
 double unit_scale(std::string_view type, std::string_view unit);
 
-/// Our axes from a space whose x, y and z point towards the given letters, such as "ALS": A or P, L
-/// or R, S or I. Empty if no letter says which axis is up, or if two letters name the same axis.
+/// The conversion to kinalign's axes from a space whose x, y and z axes point in the directions of
+/// the letters, for example "ALS". The letters are A or P, L or R, S or I. The result is empty if
+/// no letter names the up axis, or if two letters name the same axis.
 std::optional<Axes> axes_of_letters(std::string_view letters);
 
 }  // namespace kinalign

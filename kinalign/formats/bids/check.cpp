@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks of the data set as a whole: positions and names of files, and the tables about all of
-// them.
+// Checks the data set as a whole: positions and names of files, and the tables about all files.
 #include "kinalign/formats/bids/check.h"
 
 #include "kinalign/formats/bids/check_context.h"
@@ -20,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A larger table or JSON file can't be meant, and would fill the memory.
+// The limit protects the memory. No useful table or JSON file is larger.
 constexpr std::size_t largest_text = std::size_t{16} << 20;
 
 template <std::size_t n>
@@ -28,7 +27,7 @@ bool contains(const std::array<std::string_view, n>& all, std::string_view one) 
   return std::find(all.begin(), all.end(), one) != all.end();
 }
 
-// Files and folders that BIDS allows at the top. Data types other than motion are allowed but not
+// Files and folders that BIDS allows at the top. Data types other than motion are allowed, but not
 // checked.
 constexpr std::array<std::string_view, 14> top_files{"dataset_description.json",
                                                      "README",
@@ -51,24 +50,25 @@ constexpr std::array<std::string_view, 12> other_types{
 constexpr std::array<std::string_view, 10> motion_endings{
     "motion.tsv",  "motion.json",   "channels.tsv", "channels.json", "events.tsv",
     "events.json", "physio.tsv.gz", "physio.json",  "stim.tsv.gz",   "stim.json"};
-// These may also lie above the motion folder, and then apply to all files below.
+// These files may also be in a folder above `motion`. They then apply to all files below that
+// folder.
 constexpr std::array<std::string_view, 4> inherited_endings{"motion.json", "channels.json",
                                                             "channels.tsv", "events.json"};
-// BIDS fixes the order of entities in a name.
+// BIDS requires this order of the entities (pairs such as sub-01) in a name.
 constexpr std::array<std::string_view, 8> entity_order{"sub", "ses", "task",      "tracksys",
                                                        "acq", "run", "recording", "desc"};
 
-/// True if a pattern names the path. Patterns follow .gitignore: a name at any depth, a path from
-/// the top, or a folder with everything below it.
+/// True if a pattern matches the path. Patterns are those of .gitignore: a name at any depth, a
+/// path from the top, or a folder with its whole content.
 bool is_ignored(const std::vector<std::string>& patterns, std::string_view path) {
   for (std::string_view pattern : patterns) {
-    // A pattern without a slash inside may match a name at any depth.
+    // A pattern without a slash may match a name at any depth.
     if (pattern.starts_with('/')) pattern.remove_prefix(1);
     if (pattern.ends_with('/')) pattern.remove_suffix(1);
     const bool anywhere = pattern.find('/') == std::string_view::npos;
     std::string_view before;
     for (const std::string_view part : split(path, '/')) {
-      // The path up to and including this part: a folder with everything below it matches, too.
+      // The path up to this part. If a folder matches, its whole content matches.
       before = path.substr(0, static_cast<std::size_t>(part.data() + part.size() - path.data()));
       const std::string name(anywhere ? part : before);
       if (::fnmatch(std::string(pattern).c_str(), name.c_str(), FNM_PATHNAME) == 0) return true;
@@ -77,14 +77,14 @@ bool is_ignored(const std::vector<std::string>& patterns, std::string_view path)
   return false;
 }
 
-/// The usable patterns of .bidsignore. Long patterns and those with many '*' are dropped, since
+/// The patterns in .bidsignore. Long patterns and patterns with many '*' are dropped, because
 /// matching would take too long.
 std::vector<std::string> ignore_patterns(BidsCheck& check) {
   std::vector<std::string> out;
   if (!check.listing.has(".bidsignore")) return out;
   const auto text = check.text_of(".bidsignore");
   constexpr std::size_t longest_pattern = 200, most_patterns = 1000;
-  // A header line is put in front, because the file has none.
+  // The file has no header line, so one is added.
   for (const auto& row : read_tsv("pattern\n" + text.value_or("")).rows) {
     const std::string& pattern = row.front();
     const bool good = !pattern.empty() && pattern.front() != '#' &&
@@ -95,25 +95,25 @@ std::vector<std::string> ignore_patterns(BidsCheck& check) {
   return out;
 }
 
-/// True for letters and digits, and '+', which BIDS 1.11 allows.
-/// BIDS 1.9 allows letters and digits only.
+/// True for a label of letters, digits and '+'. BIDS 1.9 allows letters and digits only, and BIDS
+/// 1.11 allows '+', too.
 bool is_label(std::string_view label) {
   std::string without(label);
   std::erase(without, '+');
   return !label.empty() && (without.empty() || is_bids_label(without));
 }
 
-/// Checks the entities of a name: known ones only, in the order of BIDS, with valid labels.
+/// Checks the entities of a name: they must be known, in the order of BIDS, and have valid labels.
 void check_entities(const std::string& path, const BidsName& name, BidsCheck& check) {
   std::size_t next = 0;
   for (const auto& [key, label] : name.entities) {
-    // Searched from the last place on, so that a wrong order is found, too.
+    // The search begins at the position of the last entity, so that a wrong order is found.
     const auto* const known = std::find(entity_order.begin() + next, entity_order.end(), key);
     if (known == entity_order.end()) {
       check.error(path, "entities sub, ses, task, tracksys, acq, run in this order", shown(key));
       return;
     }
-    // Each entity may occur once.
+    // The next search begins behind this entity, because each entity may occur only once.
     next = static_cast<std::size_t>(known - entity_order.begin()) + 1;
     if (!is_label(label)) check.error(path, "letters and digits for " + key, shown(label));
     const bool digits =
@@ -123,11 +123,11 @@ void check_entities(const std::string& path, const BidsName& name, BidsCheck& ch
 }
 
 struct Place {
-  std::string subject, session;  // labels of the folders in which the file lies
+  std::string subject, session;  // labels of the folders that contain the file
 };
 
-/// Checks the name of a file below sub-.../ or sub-.../ses-.../ against these folders.
-/// The name repeats subject and session of the folders, so that a file is known without its place.
+/// Checks the name of a file below sub-.../ or sub-.../ses-.../. The name must repeat subject and
+/// session of these folders.
 void check_file_name(const std::string& path, const Place& place, std::string_view type,
                      BidsCheck& check) {
   const auto name = parse_bids_name(file_name(path));
@@ -148,29 +148,29 @@ void check_file_name(const std::string& path, const Place& place, std::string_vi
                 "ses-" + shown(name->label("ses")));
   }
   if (type != "motion") return;
-  // Other data types have endings of their own, which are not checked here.
+  // Other data types have other endings, which are not checked.
   if (!contains(motion_endings, name->ending)) {
     check.error(path, "motion.tsv, motion.json, channels.tsv, channels.json or events.tsv",
                 shown(name->ending));
     return;
   }
-  // events.tsv and its sidecars belong to the task and to no tracking system.
+  // events.tsv and its sidecar files belong to the task, not to a tracking system.
   const bool of_system =
       name->ending.starts_with("motion.") || name->ending.starts_with("channels.");
   if (name->label("task").empty()) check.error(path, "a task", "none");
   if (of_system && name->label("tracksys").empty()) check.error(path, "a tracksys", "none");
 }
 
-/// True for a table that lies directly in a subject's or session's folder.
+/// True for a table that may be directly in the folder of a subject or session.
 bool is_table_of_subject(std::string_view ending) {
   return ending == "scans.tsv" || ending == "scans.json" || ending == "sessions.tsv" ||
          ending == "sessions.json";
 }
 
-/// Checks the path of a file below a subject's folder; `parts` are its folders and its name.
+/// Checks the path of a file below a subject's folder. `parts`: its folders and its name.
 void check_subject_path(const std::string& path, std::vector<std::string_view> parts,
                         BidsCheck& check) {
-  // "sub-" has four letters, and so has "ses-".
+  // Both "sub-" and "ses-" have four characters.
   Place place{std::string(parts.front().substr(4)), ""};
   if (!is_label(place.subject))
     check.error(path, "letters and digits for sub", shown(place.subject));
@@ -181,7 +181,7 @@ void check_subject_path(const std::string& path, std::vector<std::string_view> p
       check.error(path, "letters and digits for ses", shown(place.session));
     parts.erase(parts.begin());
   }
-  // The file lies directly in the subject's or session's folder.
+  // The file is directly in the folder of a subject or session.
   if (parts.size() == 1) {
     const auto name = parse_bids_name(parts.front());
     if (name && (is_table_of_subject(name->ending) || contains(inherited_endings, name->ending))) {
@@ -194,20 +194,20 @@ void check_subject_path(const std::string& path, std::vector<std::string_view> p
   }
   if (parts.size() == 2 && parts.front() == "motion")
     return check_file_name(path, place, "motion", check);
-  // Files of other data types are left to other checkers.
+  // Files of other data types are not checked here.
   if (contains(other_types, parts.front())) return;
   check.error(path, "a folder of a data type of BIDS, such as motion", shown(parts.front()));
 }
 
-/// Checks the path of any file: it is at the top, below a subject's folder or below another folder
-/// of BIDS.
+/// Checks the path of any file. The file may be at the top, below a subject's folder, or below
+/// another folder of BIDS.
 void check_path(const std::string& path, BidsCheck& check) {
   const auto parts = split(path, '/');
   const std::string_view first = parts.front();
-  // Hidden files, .bidsignore among them.
+  // Hidden files, such as .bidsignore, are not checked.
   if (first.starts_with('.')) return;
   if (parts.size() > 1 && first.starts_with("sub-")) return check_subject_path(path, parts, check);
-  // A folder at the top that is no subject's.
+  // The path is in a folder at the top that does not belong to a subject.
   if (parts.size() > 1) {
     if (!contains(top_folders, first)) {
       check.error(path, "a folder sub-..., sourcedata, derivatives, code, stimuli or phenotype",
@@ -216,14 +216,14 @@ void check_path(const std::string& path, BidsCheck& check) {
     return;
   }
   if (contains(top_files, first)) return;
-  // Inherited files at the top apply to all subjects.
+  // Such files at the top apply to all subjects.
   const auto name = parse_bids_name(first);
   if (name && contains(inherited_endings, name->ending)) return check_entities(path, *name, check);
   check.error(path, "a file that BIDS knows; others belong into sourcedata/ or .bidsignore",
               shown(first));
 }
 
-/// Checks dataset_description.json: required keys, types of values, a license.
+/// Checks dataset_description.json: required keys, types of values, and a license.
 void check_description(BidsCheck& check) {
   const std::string path = "dataset_description.json";
   if (!check.listing.has(path)) return check.error(path, "this file", "none");
@@ -232,7 +232,7 @@ void check_description(BidsCheck& check) {
   for (const char* key : {"Name", "BIDSVersion"}) {
     if (text_in(*json, key).empty()) check.error(path, std::string("a text ") + key, "none");
   }
-  // A data set without a type is raw.
+  // Without DatasetType, the data set is raw.
   const std::string type = json->contains("DatasetType") ? text_in(*json, "DatasetType") : "raw";
   if (type != "raw" && type != "derivative") {
     check.error(path, "DatasetType raw or derivative", shown(type));
@@ -255,14 +255,14 @@ void check_readme(BidsCheck& check) {
 
 std::set<std::string> subjects_of(const BidsListing& listing) {
   std::set<std::string> out;
-  // Each subject occurs in many paths; the set keeps one name.
+  // Many paths contain the same subject. The set keeps each name once.
   for (const std::string& path : listing.paths) {
     if (path.starts_with("sub-")) out.insert(path.substr(0, path.find('/')));
   }
   return out;
 }
 
-/// Compares the rows of participants.tsv with the subjects' folders.
+/// Compares the rows of participants.tsv with the folders of subjects.
 void check_participant_rows(const std::string& path, const TsvTable& table, BidsCheck& check) {
   const std::set<std::string> subjects = subjects_of(check.listing);
   std::set<std::string> listed;
@@ -273,19 +273,19 @@ void check_participant_rows(const std::string& path, const TsvTable& table, Bids
     if (!listed.insert(row.front()).second) {
       check.error(path, "each participant once", shown(row.front()) + " again", line);
     }
-    // A participant may have data of another type, or none yet.
+    // A participant may have data of another type, or no data yet.
     if (!subjects.contains(row.front())) {
       check.warning(path, "a folder of each participant", "no folder of " + shown(row.front()),
                     line);
     }
   }
-  // Data without a participant is an error of the table.
+  // A subject without a row in the table is an error.
   for (const std::string& subject : subjects) {
     if (!listed.contains(subject)) check.error(path, "a row of " + shown(subject), "none");
   }
 }
 
-/// Checks participants.tsv, and that participants.json describes each further column.
+/// Checks participants.tsv. Also checks that participants.json describes each further column.
 void check_participants(BidsCheck& check) {
   const std::string path = "participants.tsv", described = "participants.json";
   if (!check.listing.has(path)) return check.warning(path, "this file", "none");
@@ -296,7 +296,7 @@ void check_participants(BidsCheck& check) {
                        table->columns.empty() ? "none" : shown(table->columns.front()), 1);
   }
   check_participant_rows(path, *table, check);
-  // Without participants.json no column is described.
+  // Without participants.json, no column is described.
   const auto json = check.listing.has(described) ? check.json_of(described) : std::nullopt;
   for (std::size_t c = 1; c < table->columns.size(); ++c) {
     if (json && json->contains(table->columns[c])) continue;
@@ -304,20 +304,20 @@ void check_participants(BidsCheck& check) {
   }
 }
 
-/// Checks one scans.tsv: each row names an existing file, and each motion.tsv of the folder has a
-/// row.
+/// Checks one scans.tsv. Each row must name an existing file, and each motion.tsv of the folder
+/// must have a row.
 void check_scans(const std::string& path, BidsCheck& check) {
   const auto table = check.table_of(path);
   if (!table) return;
   const auto file = table->column("filename"), time = table->column("acq_time");
   if (!file) return check.error(path, "a column filename", "none", 1);
-  // Paths in scans.tsv count from the table's own folder.
+  // Paths in scans.tsv are relative to the folder of the table.
   const std::string above(folder(path));
   std::set<std::string> listed;
   for (std::size_t i = 0; i < table->rows.size(); ++i) {
     const auto& row = table->rows[i];
     const std::int64_t line = line_of_row(i);
-    // A row of another length can't be read by column.
+    // A row with a wrong number of cells can't be read by column.
     if (!check.is_whole_row(path, *table, i)) continue;
     if (!check.listing.has(above + row[*file]))
       check.error(path, "an existing file", shown(row[*file]), line);
@@ -326,7 +326,7 @@ void check_scans(const std::string& path, BidsCheck& check) {
       check.error(path, "acq_time YYYY-MM-DDThh:mm:ss[.000000][Z]", shown(row[*time]), line);
     }
   }
-  // Data of this folder that the table does not mention.
+  // Files in this folder without a row in the table.
   for (const std::string& one : check.listing.paths) {
     if (one.starts_with(above + "motion/") && one.ends_with("_motion.tsv") &&
         !listed.contains(one)) {
@@ -335,10 +335,10 @@ void check_scans(const std::string& path, BidsCheck& check) {
   }
 }
 
-/// Checks that a sidecar file has its motion.tsv. A sidecar without one means that the data was
-/// lost or misnamed.
+/// Checks that the motion.tsv of a sidecar file exists. Otherwise the data file is missing or has a
+/// wrong name.
 void check_unpaired(const std::string& path, BidsCheck& check) {
-  // The name of the data follows from that of its sidecar.
+  // The name of the data file follows from the name of the sidecar file.
   for (const std::string_view ending : {"motion.json", "channels.tsv"}) {
     if (path.find("/motion/") == std::string::npos || !path.ends_with("_" + std::string(ending)))
       continue;
@@ -376,7 +376,7 @@ std::optional<std::string> BidsCheck::text_of(const std::string& path) {
 }
 
 void BidsCheck::unreadable(const std::string& path, Error what) {
-  // The path in the listing replaces that of the disk.
+  // The error gets the path in the listing instead of the path on the disk.
   what.file = path;
   findings.push_back({Severity::error, std::move(what), "the file can't be checked", ""});
 }
@@ -400,7 +400,7 @@ std::optional<Json> BidsCheck::json_of(const std::string& path) {
   if (!text) return std::nullopt;
   auto json = parse_bids_json(*text, path);
   if (json) return *std::move(json);
-  // A JSON that can't be read is an error of the data set, not of the checker.
+  // A JSON file that can't be read is an error of the data set and not of the checker.
   error(path, json.error().expected, json.error().found);
   return std::nullopt;
 }
@@ -411,18 +411,18 @@ std::vector<std::string> BidsCheck::inherited(const std::string& path,
   std::vector<std::string> out;
   if (!own) return out;
   for (const std::string& other : listing.paths) {
-    // Only files in a folder above can apply. The ending is compared again below, since one may end
-    // in another.
+    // Only files in the same folder or above can apply. The ending is compared again below, because
+    // one ending may be the end of another.
     if (!other.ends_with(ending) || !path.starts_with(folder(other))) continue;
     const auto name = parse_bids_name(file_name(other));
     if (!name || name->ending != ending) continue;
     const bool holds =
-        // A file without an entity applies to all values of that entity.
+        // If a file lacks an entity, it applies to all values of this entity.
         std::all_of(name->entities.begin(), name->entities.end(),
                     [&](const auto& entity) { return own->label(entity.first) == entity.second; });
     if (holds) out.push_back(other);
   }
-  // The nearest file comes last, so that its keys win when they are merged.
+  // The nearest file comes last, so that its keys override the others when the files are merged.
   std::stable_sort(out.begin(), out.end(), [](const std::string& a, const std::string& b) {
     return folder(a).size() < folder(b).size();
   });
@@ -433,7 +433,7 @@ Result<BidsListing> list_bids_folder(FileSystem& files, const std::string& folde
   namespace fs = std::filesystem;
   BidsListing listing;
   std::error_code failed;
-  // Links to folders are not followed by default, so a loop of links can't occur.
+  // Links to folders are not followed, so the loop always ends.
   for (fs::recursive_directory_iterator at(folder, failed), end; !failed && at != end;
        at.increment(failed)) {
     if (at->is_regular_file(failed)) {
@@ -441,7 +441,7 @@ Result<BidsListing> list_bids_folder(FileSystem& files, const std::string& folde
     }
   }
   if (failed) return refuse(folder, "a folder that can be read", failed.message());
-  // `folder` is copied, because the listing lives longer than the call.
+  // `folder` is copied, because the listing exists longer than this call.
   listing.read = [&files, folder](const std::string& path, const FileSink& use) -> Result<void> {
     InputFile file = KA_TRY(InputFile::open(files, folder + "/" + path));
     for (auto piece = KA_TRY(file.next()); !piece.empty(); piece = KA_TRY(file.next())) {
@@ -457,13 +457,13 @@ Findings check_bids(const BidsListing& listing) {
   check_description(check);
   check_readme(check);
   check_participants(check);
-  // .bidsignore is read first. Files that it names may break any rule.
+  // .bidsignore is read first. Files that match its patterns are not checked.
   const auto ignored = ignore_patterns(check);
   bool motion = false;
   for (const std::string& path : listing.paths) {
     if (is_ignored(ignored, path)) continue;
     check_path(path, check);
-    // Only subjects have data and sidecars.
+    // Only folders of subjects contain data and sidecar files.
     if (!path.starts_with("sub-")) continue;
     check_unpaired(path, check);
     if (path.ends_with("_scans.tsv")) check_scans(path, check);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks the files of one tracking system against each other: channels.tsv, channels.json,
+// Compares the files of one tracking system with each other: channels.tsv, channels.json,
 // motion.json and motion.tsv.
 #include "kinalign/core/files.h"
 #include "kinalign/formats/bids/channels.h"
@@ -25,8 +25,8 @@ bool is_one_of(std::string_view text, std::initializer_list<std::string_view> al
   return std::find(all.begin(), all.end(), text) != all.end();
 }
 
-/// True if the channel's type can have its component.
-/// A quaternion's parts occur in orientations only, and a latency has no component.
+/// True if the channel's type allows its component. Only orientations have parts of a quaternion,
+/// and a latency has no component.
 bool fits(const BidsChannel& channel) {
   const bool axis = is_one_of(channel.component, {"x", "y", "z"});
   if (channel.type == "ORNT") return axis || channel.component.starts_with("quat_");
@@ -35,7 +35,7 @@ bool fits(const BidsChannel& channel) {
   return true;
 }
 
-/// The path of a file that belongs to the motion.tsv.
+/// The path of the sidecar file with this ending.
 std::string sidecar(std::string_view motion_tsv, const char* ending) {
   motion_tsv.remove_suffix(std::string_view("motion.tsv").size());
   return std::string(motion_tsv) + ending;
@@ -48,8 +48,8 @@ std::string in_capitals(std::string text) {
   return text;
 }
 
-/// Checks the header line of channels.tsv: five required columns in their order, no name twice.
-/// BIDS fixes the order of these columns, unlike that of all others.
+/// Checks the header line of channels.tsv: five required columns in order, and no repeated name.
+/// BIDS requires the order of these columns only.
 void check_columns(const std::string& path, const TsvTable& table, BidsCheck& check) {
   constexpr std::array<const char*, 5> needed{"name", "component", "type", "tracked_point",
                                               "units"};
@@ -67,7 +67,7 @@ void check_columns(const std::string& path, const TsvTable& table, BidsCheck& ch
 void check_channel(const std::string& path, std::int64_t line, const BidsChannel& channel,
                    BidsCheck& check) {
   if (!is_bids_type(channel.type)) {
-    // A frequent fault, so it has its own message.
+    // Types in lower case are a frequent fault, so they have their own message.
     const bool lower = is_bids_type(in_capitals(channel.type));
     check.error(path, lower ? "types in capitals" : "a type of BIDS, such as POS or GYRO",
                 shown(channel.type), line);
@@ -79,12 +79,12 @@ void check_channel(const std::string& path, std::int64_t line, const BidsChannel
   } else if (!fits(channel)) {
     check.error(path, "a component of " + channel.type, shown(channel.component), line);
   }
-  // Any unit is accepted for these types.
+  // These types may have any unit.
   const bool free_unit = is_one_of(channel.type, {"MAGN", "MISC", "VEL"});
   if (channel.units.empty() || (!free_unit && unit_scale(channel.type, channel.units) == 0.0)) {
     check.warning(path, "a unit of " + channel.type, shown(channel.units), line);
   }
-  // The parts of a quaternion have no unit; angles have one.
+  // The parts of a quaternion have no unit, but angles have a unit.
   const bool quaternion = channel.component.starts_with("quat_");
   if (channel.type == "ORNT" && quaternion != (channel.units == "n/a")) {
     check.warning(path, quaternion ? "the unit n/a of a quaternion" : "rad or deg of an angle",
@@ -92,11 +92,11 @@ void check_channel(const std::string& path, std::int64_t line, const BidsChannel
   }
 }
 
-/// Checks that a quaternion has all four parts and a vector all three, for each tracked point and
-/// type.
+/// Checks for each tracked point and type that a quaternion has all four parts and a vector all
+/// three.
 void check_groups(const std::string& path, const std::vector<BidsChannel>& channels,
                   BidsCheck& check) {
-  // Key: tracked point and type. A repeated component counts once.
+  // The key is the tracked point and the type. A repeated component counts once.
   std::map<std::pair<std::string, std::string>, std::set<std::string>> groups;
   for (const BidsChannel& c : channels) {
     if (c.component != "n/a" && is_bids_type(c.type))
@@ -129,18 +129,18 @@ void check_status(const std::string& path, const TsvTable& table, BidsCheck& che
   }
 }
 
-/// Checks channels.tsv row by row. Returns its channels; none if the table can't be understood.
+/// Checks channels.tsv row by row. Returns its channels; empty if the table can't be understood.
 std::vector<BidsChannel> check_channels(const std::string& path, BidsCheck& check) {
   const auto table = check.table_of(path);
   if (!table) return {};
   check_columns(path, *table, check);
-  // A column is missing, which check_columns() has reported.
+  // check_columns() has reported the missing column.
   const auto channels = channels_of(*table, path);
   if (!channels) return {};
   std::set<std::string> names;
   for (std::size_t i = 0; i < channels->size(); ++i) {
     const std::int64_t line = line_of_row(i);
-    // The cells of such a row can't be told apart.
+    // In a row with a wrong number of cells, the column of a cell is not known.
     if (!check.is_whole_row(path, *table, i)) continue;
     check_channel(path, line, (*channels)[i], check);
     if (!names.insert((*channels)[i].name).second) {
@@ -153,26 +153,26 @@ std::vector<BidsChannel> check_channels(const std::string& path, BidsCheck& chec
   return *channels;
 }
 
-/// Names of the reference frames in a channels.json. Invalid SpatialAxes become a warning.
-/// BIDS puts them below reference_frame: Levels.
+/// The names of the reference frames in a channels.json file, which stand in reference_frame:
+/// Levels. Adds a warning if SpatialAxes are invalid.
 std::set<std::string> described_frames(const std::string& path, BidsCheck& check) {
   std::set<std::string> out;
   const auto json = check.json_of(path);
   if (!json) return out;
   for (const auto& [name, letters] : frames_in(*json)) {
     out.insert(name);
-    // "n/a" is allowed: the directions are not known.
+    // "n/a" is allowed: the directions are then unknown.
     if (!letters || *letters == "n/a" || axes_of_letters(*letters)) continue;
     check.warning(path, "SpatialAxes of three letters A or P, L or R, S or I", shown(*letters));
   }
   return out;
 }
 
-/// Checks that channels.json describes each reference frame in use.
+/// Checks that channels.json describes each reference frame in channels.tsv.
 void check_frames(const std::string& motion_tsv, const std::vector<BidsChannel>& channels,
                   BidsCheck& check) {
   std::set<std::string> frames;
-  // "n/a" and an empty cell name no frame.
+  // "n/a" and an empty cell do not name a frame.
   for (const BidsChannel& c : channels) frames.insert(c.reference_frame);
   frames.erase("n/a");
   frames.erase("");
@@ -188,9 +188,9 @@ void check_frames(const std::string& motion_tsv, const std::vector<BidsChannel>&
   }
 }
 
-/// Keys of all motion.json files that apply to the motion.tsv. A nearer file overrides the ones
-/// above.
-/// An incomplete result would give wrong findings, so one file that can't be read ends the check.
+/// The merged keys of all motion.json files that apply to the motion.tsv. A nearer file overrides
+/// the others. If one file can't be read, the result is empty, because incomplete keys would give
+/// wrong findings.
 std::optional<FoundJson> merged_json(const std::string& motion_tsv, BidsCheck& check) {
   const auto paths = check.inherited(motion_tsv, "motion.json");
   if (paths.empty()) {
@@ -206,8 +206,8 @@ std::optional<FoundJson> merged_json(const std::string& motion_tsv, BidsCheck& c
   return all;
 }
 
-/// Compares the keys of motion.json with the channels and the rows.
-/// Numbers and texts are compared only if the file states them.
+/// Compares the keys in motion.json with the channels and the rows. A key that is absent is not
+/// compared.
 class FactsCheck {
  public:
   FactsCheck(std::string path, const FoundJson& json, BidsCheck& check)
@@ -221,7 +221,7 @@ class FactsCheck {
     return std::nullopt;
   }
 
-  /// A count that is absent is no fault.
+  /// Compares a count. An absent count is not a fault.
   void count(const std::string& key, std::size_t is) const {
     const auto stated = number(key.c_str());
     if (stated && *stated != static_cast<double>(is)) {
@@ -229,9 +229,8 @@ class FactsCheck {
     }
   }
 
-  /// Checks TaskName and TrackingSystemName. The letters and digits of TaskName must give the task
-  /// label.
-  /// BIDS makes the label from the name by leaving out all other characters.
+  /// Checks TaskName and TrackingSystemName. In BIDS, the task label consists of the letters and
+  /// digits of TaskName.
   void names(std::string_view task) const {
     const std::string name = text_in(json_, "TaskName");
     std::string label;
@@ -247,18 +246,18 @@ class FactsCheck {
       check_.warning(path_, "a TrackingSystemName", "none");
   }
 
-  /// Compares the stated counts of channels and tracked points with channels.tsv.
+  /// Compares the counts of channels and tracked points with channels.tsv.
   void counts(const std::vector<BidsChannel>& channels) const {
     for (const auto& [key, is] : bids_counts(channels)) count(key, is);
     const auto misc = static_cast<std::size_t>(
         std::count_if(channels.begin(), channels.end(),
                       [](const BidsChannel& channel) { return channel.type == "MISC"; }));
-    // Both spellings are accepted.
+    // Both spellings of the key are accepted.
     count("MISCChannelCount", misc);
     count("MiscChannelCount", misc);
   }
 
-  /// Compares the stated rates and duration with the number of rows and the latencies.
+  /// Compares rates and duration with the number of rows and the latencies.
   void times(const BidsRowsSummary& rows) const {
     const auto rate = number("SamplingFrequency");
     if (!rate || !(*rate > 0.0)) {
@@ -266,7 +265,7 @@ class FactsCheck {
       return;
     }
     const auto n = static_cast<double>(rows.rows);
-    // The tolerance is 2 % and two rows: rates are nominal.
+    // The tolerance is 2 % and two rows, because rates are nominal.
     const auto duration = number("RecordingDuration");
     if (duration && rows.rows > 0 &&
         std::abs(*duration - n / *rate) > 0.02 * n / *rate + 2.0 / *rate) {
@@ -275,7 +274,7 @@ class FactsCheck {
                                  *rate, n / *rate),
                      fmt::format("{:g}", *duration));
     }
-    // With one latency, or none, there is no measured rate.
+    // With fewer than two latencies, the rate can't be computed.
     const auto effective = number("SamplingFrequencyEffective");
     if (!effective || !rows.last_latency_s || *rows.last_latency_s <= *rows.first_latency_s) return;
     const double by_latency =
@@ -298,22 +297,22 @@ class FactsCheck {
 void check_bids_system(const std::string& motion_tsv, BidsCheck& check) {
   const auto tables = check.inherited(motion_tsv, "channels.tsv");
   std::vector<BidsChannel> channels;
-  // Without channels.tsv the rows are still checked against each other.
+  // Without channels.tsv, the rows are compared with each other only.
   if (tables.empty()) {
     check.error(sidecar(motion_tsv, "channels.tsv"), "this file", "none");
   } else {
-    // BIDS' nearest file wins; tables are not merged.
+    // In BIDS only the nearest table is used; tables are not merged.
     channels = check_channels(tables.back(), check);
     check_frames(motion_tsv, channels, check);
   }
   const BidsRowsSummary rows = check_bids_rows(motion_tsv, channels, check);
   const auto json = merged_json(motion_tsv, check);
   if (!json) return;
-  // Faults are reported at the nearest file.
+  // Findings name the nearest file.
   const FactsCheck facts(check.inherited(motion_tsv, "motion.json").back(), *json, check);
   const auto name = parse_bids_name(file_name(motion_tsv));
   facts.names(name ? name->label("task") : "");
-  // Counts of a table that could not be read would be wrong.
+  // If channels.tsv could not be read, its counts are not known.
   if (!channels.empty()) facts.counts(channels);
   facts.times(rows);
 }

@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 std::string dataset_description_json(const BidsDataset& dataset) {
   Json out;
   out["Name"] = dataset.name;
-  out["BIDSVersion"] = "1.9.0";  // the first one with motion
+  out["BIDSVersion"] = "1.9.0";  // the first version with motion
   out["DatasetType"] = dataset.generated_by.empty() ? "raw" : "derivative";
   if (!dataset.license.empty()) out["License"] = dataset.license;
   if (!dataset.authors.empty()) out["Authors"] = dataset.authors;
@@ -25,14 +25,14 @@ std::string dataset_description_json(const BidsDataset& dataset) {
   if (!dataset.generated_by.empty()) {
     Json program = {{"Name", dataset.generated_by}};
     if (!dataset.generated_by_version.empty()) program["Version"] = dataset.generated_by_version;
-    // GeneratedBy is a list, because several programs may have worked on a data set.
+    // GeneratedBy is a list, because several programs may have processed a data set.
     out["GeneratedBy"] = Json::array({program});
   }
   return bids_json_text(out);
 }
 
 std::string participants_tsv(const BidsParticipants& participants) {
-  // The cells of BidsParticipants begin after participant_id.
+  // The cells in BidsParticipants do not include participant_id.
   TsvTable table{{"participant_id"}, {}};
   for (const BidsColumn& column : participants.columns) table.columns.push_back(column.name);
   for (const auto& [subject, cells] : participants.rows) {

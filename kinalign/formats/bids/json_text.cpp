@@ -31,7 +31,7 @@ std::map<std::string, std::optional<std::string>> frames_in(const nlohmann::orde
   if (levels == frame->end() || !levels->is_object()) return out;
   for (const auto& [name, level] : levels->items()) {
     auto& letters = out[name];
-    // Levels may also be texts, which have no axes.
+    // Levels may be texts without axes.
     if (!level.is_object()) continue;
     const auto axes = level.find("SpatialAxes");
     if (axes != level.end() && axes->is_string()) letters = axes->get<std::string>();

@@ -16,18 +16,19 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Directions of the x, y and z axes, as seen by a person at the start: left, up, forwards.
+// The directions of the x, y and z axes from the view of the person at the start: left, up,
+// forwards.
 constexpr const char* spatial_axes = "LSA";
-constexpr int six = 6, nine = 9;  // decimals
+constexpr int six = 6, nine = 9;  // numbers of decimals
 
-/// A joint's position, m, and rotation in the space of the skeleton's root.
+/// A joint's position (m) and rotation in the space of the skeleton's root.
 struct Global {
   Vec3 place;
   Quat turn;
 };
 
-/// Forward kinematics of frame t. A root's local values are global already.
-/// A parent comes before its children, so one pass is enough.
+/// Computes the global pose of frame t. A root's local values are global already. A parent comes
+/// before its children, so one loop is enough.
 std::vector<Global> global_of(const Skeleton& skeleton, const ClipFrames& frames, std::size_t t) {
   std::vector<Global> out(skeleton.joints());
   for (std::size_t j = 0; j < out.size(); ++j) {
@@ -44,8 +45,8 @@ std::vector<Global> global_of(const Skeleton& skeleton, const ClipFrames& frames
   return out;
 }
 
-/// Text of channels.json: the reference frames in use. `letters` are the SpatialAxes of the global
-/// one.
+/// The text of channels.json, with the reference frames that occur in the channels. spatial_axes
+/// are the axes of the frame "global".
 std::string channels_json(const std::vector<BidsChannel>& channels) {
   // Only frames that occur are described.
   std::set<std::string> used;
@@ -73,9 +74,9 @@ BidsMotionWriter::BidsMotionWriter(BidsSource source, TextOut& out)
 
 void BidsMotionWriter::begin_row(Time stamp) {
   if (rows_++ == 0) {
-    // The remainder of a negative number is negative, so it is brought into range.
+    // The remainder of a negative number is negative, so 1000 is added.
     const std::int64_t ns = to_ns(stamp), below = ((ns % 1000) + 1000) % 1000;
-    // acq_time is written to the microsecond, so the latencies count from a whole one.
+    // acq_time has microseconds, so the latencies count from a whole microsecond.
     onset_ = utc_time(ns - below);
   }
   last_ = stamp;
@@ -94,7 +95,7 @@ void BidsMotionWriter::put(std::span<const double> values, int decimals, bool pr
 }
 
 Result<void> BidsMotionWriter::append(const ClipFrames& frames) {
-  // The source's kind is fixed by the constructor; another kind of block throws.
+  // The constructor determines the kind of the source. A block of another kind throws an exception.
   const Skeleton& skeleton = std::get<Skeleton>(source_);
   for (std::size_t t = 0; t < frames.size(); ++t) {
     begin_row(frames.stamps[t]);
@@ -149,14 +150,14 @@ BidsSidecars BidsMotionWriter::sidecars(const BidsSystemFacts& facts) const {
   add("SoftwareVersions", facts.software_versions);
   motion["SamplingFrequency"] = facts.rate_hz;
   const double seconds = 1e-9 * static_cast<double>((last_ - onset_).count());
-  // One row has no rate.
+  // A single row has no rate.
   if (rows_ > 1 && seconds > 0.0) {
     motion["SamplingFrequencyEffective"] = static_cast<double>(rows_ - 1) / seconds;
   }
-  // Each row lasts one step, and so does the last one.
+  // Each row, including the last one, lasts one sample period.
   if (facts.rate_hz > 0.0) motion["RecordingDuration"] = seconds + 1.0 / facts.rate_hz;
   motion["MissingValues"] = "n/a";
-  // Every count is written, also 0.
+  // All counts are written, even if they are 0.
   for (const auto& [key, count] : bids_counts(channels_)) motion[key] = count;
   return {write_tsv(channels_table(channels_)), channels_json(channels_), bids_json_text(motion),
           onset_};

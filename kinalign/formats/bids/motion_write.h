@@ -14,35 +14,35 @@
 
 namespace kinalign {
 
-/// Facts for motion.json that can't be computed from the samples. Empty texts are left out.
-/// Names for people; the labels of BidsEntities are for file names.
+/// Facts for motion.json that do not follow from the samples. Empty texts are not written. The
+/// names are for people; BidsEntities contains the labels for file names.
 struct BidsSystemFacts {
-  std::string task_name, system_name;  // "Walking and turning", "Kinect v2"
+  std::string task_name, system_name;  // such as "Walking and turning", "Kinect v2"
   double rate_hz = 0.0;                // nominal
   std::string task_description, manufacturer, model, software_versions;
 };
 
-/// The texts of the sidecar files of a motion.tsv.
-/// The texts are made after the rows, because they state counts and the measured rate.
+/// The texts of the sidecar files of a motion.tsv. They are made after the rows, because they
+/// contain counts and the measured rate.
 struct BidsSidecars {
   std::string channels_tsv, channels_json, motion_json;
-  Time onset{};  // for scans.tsv: time zero of the latencies
+  Time onset{};  // the zero of the latencies, for scans.tsv
 };
 
-/// Writes a motion.tsv. Positions have six decimals, quaternions nine, accelerations and angular
-/// velocities six, latencies nine. Positions and orientations of a skeleton are global. Missing and
-/// invalid values are n/a. The caller commits `out`, which must outlive the writer.
-/// BIDS has no local rotations, so a skeleton is written in the room's space.
+/// Writes a motion.tsv. Quaternions and latencies have nine decimals; positions, accelerations and
+/// angular velocities have six. BIDS has no local rotations, so positions and orientations of a
+/// skeleton are global. Missing and invalid values are n/a. The caller commits `out`, which must
+/// exist longer than the writer.
 class BidsMotionWriter {
  public:
   BidsMotionWriter(BidsSource source, TextOut& out);
 
-  /// Appends the next rows. Their kind must match that of the source.
+  /// Appends the next rows. Their kind must be that of the source.
   Result<void> append(const ClipFrames& frames);
   Result<void> append(const PointFrames& frames);
   Result<void> append(const ImuSamples& samples);
 
-  /// Call after the last row.
+  /// Call this after the last row.
   BidsSidecars sidecars(const BidsSystemFacts& facts) const;
 
  private:
@@ -53,7 +53,7 @@ class BidsMotionWriter {
   std::vector<BidsChannel> channels_;
   TextOut* out_;
   std::uint64_t rows_ = 0;
-  // onset_ is set by the first row; last_ is the stamp of the newest one.
+  // The first row sets onset_. last_ is the stamp of the newest row.
   Time onset_{}, last_{};
 };
 

@@ -13,15 +13,16 @@ namespace {
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
-/// Kept apart because a year far away would not fit into a Time.
+/// The parts of a time. They are separate, because a year far in the future does not fit into a
+/// Time.
 struct TimeParts {
   std::chrono::sys_days day;
   std::chrono::seconds of_day{};
   std::chrono::nanoseconds fraction{};
 };
 
-/// The number made of `count` digits from `at` on; -1 if other characters stand there.
-/// No sign and no blank is accepted, as std::from_chars would accept a sign.
+/// The number of `count` digits from `at` on; -1 if other characters stand there. Signs and blanks
+/// are not accepted, unlike in std::from_chars.
 int digits_at(std::string_view text, std::size_t at, std::size_t count) {
   if (text.size() < at + count) return -1;
   int value = 0;
@@ -32,22 +33,22 @@ int digits_at(std::string_view text, std::size_t at, std::size_t count) {
   return value;
 }
 
-/// ".25" as nanoseconds; digits after the ninth are cut off.
+/// Converts a fraction of a second to ns, for example ".25". Digits after the ninth are cut off.
 std::optional<std::chrono::nanoseconds> fraction_of(std::string_view text) {
   if (text.empty()) return std::chrono::nanoseconds{0};
   if (text.size() < 2 || text[0] != '.') return std::nullopt;
   text.remove_prefix(1);
   if (!std::all_of(text.begin(), text.end(), is_digit)) return std::nullopt;
   std::int64_t ns = 0;
-  // A missing digit counts as 0: ".5" is 500,000,000 ns.
+  // A missing digit counts as 0, so ".5" is 500,000,000 ns.
   for (std::size_t i = 0; i < 9; ++i) ns = 10 * ns + (i < text.size() ? text[i] - '0' : 0);
   return std::chrono::nanoseconds{ns};
 }
 
-/// Parses a time and checks the range of each part; a leap second, 60, is allowed.
+/// Parses a time and checks the range of each part. A leap second (60) is allowed.
 std::optional<TimeParts> time_parts_of(std::string_view text) {
   constexpr std::size_t whole = 19;  // YYYY-MM-DDThh:mm:ss
-  // A time without Z is taken as UTC.
+  // A time without Z is read as UTC.
   if (text.ends_with('Z')) text.remove_suffix(1);
   if (text.size() < whole) return std::nullopt;
   const bool separated =
@@ -60,7 +61,7 @@ std::optional<TimeParts> time_parts_of(std::string_view text) {
       second < 0 || second > 60 || month < 0 || day < 0) {
     return std::nullopt;
   }
-  // The calendar knows the length of each month.
+  // The calendar checks the length of the month.
   const std::chrono::year_month_day date{std::chrono::year{year},
                                          std::chrono::month{static_cast<unsigned>(month)},
                                          std::chrono::day{static_cast<unsigned>(day)}};
@@ -99,14 +100,14 @@ std::optional<BidsName> parse_bids_name(std::string_view file_name) {
   BidsName out;
   for (;;) {
     const auto end = file_name.find('_');
-    // The last part has no key: it is suffix and extension.
+    // The last part has no key. It consists of suffix and extension.
     if (end == std::string_view::npos) {
       out.ending = file_name;
       if (file_name.empty() || file_name.find('-') != std::string_view::npos) return std::nullopt;
       return out;
     }
     const std::string_view part = file_name.substr(0, end);
-    // "key-" and "-label" are no entities.
+    // "key-" and "-label" are not entities.
     const auto dash = part.find('-');
     if (dash == std::string_view::npos || dash == 0 || dash + 1 == part.size()) return std::nullopt;
     out.entities.emplace_back(part.substr(0, dash), part.substr(dash + 1));
@@ -116,7 +117,7 @@ std::optional<BidsName> parse_bids_name(std::string_view file_name) {
 
 std::string acq_time_text(Time time) {
   const std::chrono::sys_time<Duration> at{time.time_since_epoch()};
-  // floor: times before 1970 are negative.
+  // floor() is used, because times before 1970 are negative.
   const auto day = std::chrono::floor<std::chrono::days>(at);
   const std::chrono::year_month_day date{day};
   const std::chrono::hh_mm_ss of_day{std::chrono::floor<std::chrono::microseconds>(at - day)};
@@ -130,7 +131,7 @@ std::optional<Time> parse_acq_time(std::string_view text) {
   const auto parts = time_parts_of(text);
   if (!parts) return std::nullopt;
   const int year = static_cast<int>(std::chrono::year_month_day{parts->day}.year());
-  // Readers accept +-4e18 ns, which are the years 1843 to 2096.
+  // Readers accept +-4e18 ns, which is 1843 to 2096.
   if (year < 1850 || year > 2090) return std::nullopt;
   const std::chrono::nanoseconds whole = parts->day.time_since_epoch() + parts->of_day;
   return Time{whole + parts->fraction};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the rows of a motion.tsv as points or as nodes.
+// Reads the rows of a motion.tsv as points or as inertial nodes.
 #include "kinalign/core/numbers.h"
 #include "kinalign/formats/bids/system.h"
 #include "kinalign/formats/cells.h"
@@ -21,11 +21,11 @@ namespace kinalign {
 
 namespace {
 
-// No offset: latencies are seconds from the onset.
+// Latencies are seconds from the onset, so the scale has no offset.
 constexpr TimeScale latency_seconds{1'000'000'000, 0};
 
-/// The n columns of one quantity of a tracked point, in the order of our arrays, with their unit
-/// factors.
+/// The n columns of one quantity of a tracked point, in the order of kinalign's arrays, with the
+/// factors of their units.
 template <std::size_t n>
 struct Quantity {
   std::array<std::size_t, n> columns{};
@@ -33,8 +33,8 @@ struct Quantity {
   std::string frame;
 };
 
-/// The quantity's columns in channels.tsv; empty if one of the components is missing.
-/// A point may lack a quantity; the caller decides whether it needs it.
+/// The columns of a quantity in channels.tsv. The result is empty if a component is missing. The
+/// caller decides whether the quantity is needed.
 template <std::size_t n>
 std::optional<Quantity<n>> find_quantity(const BidsSystem& system, std::string_view point,
                                          std::string_view type,
@@ -53,22 +53,22 @@ std::optional<Quantity<n>> find_quantity(const BidsSystem& system, std::string_v
   return out;
 }
 
-/// Names of the tracked points, in the order of their first channels.
+/// The names of the tracked points, in the order of their first channels.
 std::vector<std::string> tracked_points(const BidsSystem& system) {
   std::vector<std::string> out;
   std::set<std::string> known;
-  // Channels of one point may stand anywhere in the table.
+  // The channels of a point may stand anywhere in the table.
   for (const BidsChannel& channel : system.channels) {
     if (known.insert(channel.tracked_point).second) out.push_back(channel.tracked_point);
   }
   return out;
 }
 
-/// Our axes from those of a reference frame; y up if nothing is known about the frame. Empty if its
-/// letters are no valid axes.
+/// The conversion from a reference frame to kinalign's axes; y up if the frame's axes are unknown.
+/// The result is empty if the frame's letters are not valid axes.
 std::optional<Axes> axes_of_frame(const BidsSystem& system, const std::string& frame) {
   const auto letters = system.letters.find(frame);
-  // A frame without letters counts as y up.
+  // A frame without letters is read as y up.
   if (letters == system.letters.end() || letters->second.value_or("n/a") == "n/a") return y_up;
   return axes_of_letters(*letters->second);
 }
@@ -91,7 +91,8 @@ std::optional<std::size_t> latency_column(const BidsSystem& system) {
   return static_cast<std::size_t>(latency - system.channels.begin());
 }
 
-/// Without latencies the rows are counted by the rate, and the onset is the stamp of the first row.
+/// Without latencies, the rate gives the times of rows, and the onset is the stamp of the first
+/// row.
 RowStamps stamps_of(const BidsSystem& system, const StreamOptions& options) {
   const bool latency = latency_column(system).has_value();
   const double rate = options.rate_hz > 0.0 ? options.rate_hz : system.rate_hz;
@@ -100,8 +101,8 @@ RowStamps stamps_of(const BidsSystem& system, const StreamOptions& options) {
   return RowStamps(latency, rate, start);
 }
 
-/// Splits the lines into numbers: for each wanted column its value, or that the value is missing.
-/// Only wanted columns are parsed; a motion.tsv may have hundreds of others.
+/// Splits lines into numbers. For each wanted column, it stores the value, or that the value is
+/// missing. Other columns are not parsed, because a motion.tsv may have hundreds of them.
 class BidsRows {
  public:
   explicit BidsRows(const BidsSystem& system)
@@ -111,13 +112,13 @@ class BidsRows {
         latency_(latency_column(system)),
         onset_ns_(system.onset ? to_ns(*system.onset) : 0) {}
 
-  /// Marks the columns of a quantity, so that read() parses them.
+  /// Marks the columns of a quantity as wanted, so that read() parses them.
   template <std::size_t n>
   void want(const Quantity<n>& quantity) {
     for (const std::size_t column : quantity.columns) wanted_[column] = true;
   }
 
-  /// Reads a line into `values` and `missing`. False for an empty line.
+  /// Reads a line into `values` and `missing`. Returns false for an empty line.
   Result<bool> read(std::string_view line) {
     if (trimmed(line).empty()) return false;
     std::size_t c = 0;
@@ -127,16 +128,16 @@ class BidsRows {
       if (tab == std::string_view::npos) break;
       line.remove_prefix(tab + 1);
     }
-    // Another number of cells would shift the columns.
+    // A wrong number of cells would shift the columns.
     if (c + 1 == values.size()) return true;
     return refuse(fmt::format("{} cells, one per row of channels.tsv", values.size()),
                   std::to_string(c + 1));
   }
 
-  /// The stamp that the row states; 0 without latencies.
+  /// The stamp of the row; 0 if the file has no latencies.
   Result<std::int64_t> stamp_ns() const {
     std::int64_t ns = 0;
-    // The sum of a file's onset and latency may overflow.
+    // The sum of onset and latency may overflow.
     if (latency_ && __builtin_add_overflow(onset_ns_, latency_ns_, &ns)) {
       return refuse("a stamp inside +-4e18 ns", "a stamp outside");
     }
@@ -148,7 +149,7 @@ class BidsRows {
   std::uint64_t nan_cells = 0;
 
  private:
-  /// Parses cell c: the latency, or the number of a wanted column. Other cells are not looked at.
+  /// Parses cell c if it is the latency or belongs to a wanted column.
   Result<void> read_cell(std::string_view cell, std::size_t c) {
     if (latency_ && c == *latency_) {
       const auto ns = parse_stamp(cell, latency_seconds);
@@ -157,11 +158,11 @@ class BidsRows {
       return {};
     }
     if (!wanted_[c]) return {};
-    // BIDS writes n/a; other marks are counted and reported once.
+    // BIDS requires n/a. Other marks for missing values are counted for a finding.
     missing[c] = cell == "n/a" || says_missing(cell) ? 1 : 0;
     if (missing[c] != 0) {
       nan_cells += cell == "n/a" ? 0 : 1;
-      // A missing value must not keep that of the row before.
+      // A missing value becomes 0, so that it does not keep the value of the previous row.
       values[c] = 0.0;
       return {};
     }
@@ -174,8 +175,8 @@ class BidsRows {
   std::int64_t latency_ns_ = 0, onset_ns_;
 };
 
-/// The part that both readers share. Base is PointReader or ImuReader. The derived class converts
-/// one row; it is called for rows in the order of the file.
+/// The common part of both readers. Base is PointReader or ImuReader. The derived class converts
+/// each row, in the order of the file.
 template <class Base>
 class BidsReader : public LineReader<Base> {
  public:
@@ -187,7 +188,7 @@ class BidsReader : public LineReader<Base> {
   }
 
  protected:
-  // Called after rows_.read() has filled the row.
+  // Called when rows_.read() has filled the row.
   virtual void append_row(Frames& out) = 0;
 
   Result<void> report() override {
@@ -204,7 +205,7 @@ class BidsReader : public LineReader<Base> {
  private:
   Result<void> read(std::string_view line, Frames& out) override {
     if (!KA_TRY(rows_.read(line))) return {};
-    // The stamp comes before the values, which the derived class appends.
+    // The stamp is appended before the derived class appends the values.
     Frames& target = this->held_.target(this->stamps_, out);
     target.stamps.push_back(KA_TRY(this->stamps_.next(KA_TRY(rows_.stamp_ns()))));
     append_row(target);
@@ -231,20 +232,20 @@ class BidsPointReader final : public BidsReader<PointReader> {
       header_->joint_names.push_back(point.name);
       rows_.want(point.places);
     }
-    // The user's unit replaces that of the file, so the file's factors must not apply as well.
+    // The user's unit replaces the units in the file, so the file's factors are set to 1.
     if (options.metres_per_unit > 0.0) {
       for (TrackedPoint& point : points_) point.places.scales = {1.0, 1.0, 1.0};
     }
   }
 
  private:
-  /// Appends a row of points; a point that lacks one of its coordinates is missing.
+  /// Appends a row of points. A point is missing if one of its coordinates is missing.
   void append_row(PointFrames& out) override {
     for (std::size_t j = 0; j < points_.size(); ++j) {
       bool there = true;
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t column = points_[j].places.columns[k];
-        // A point needs all of its coordinates.
+        // A point needs all three coordinates.
         there = there && rows_.missing[column] == 0;
         raw_[3 * j + k] = points_[j].places.scales[k] * rows_.values[column];
       }
@@ -255,8 +256,8 @@ class BidsPointReader final : public BidsReader<PointReader> {
 
   std::vector<TrackedPoint> points_;
   PointUnits units_;
-  std::vector<double> raw_;       // [J,3] the current row, in the file's axes
-  std::vector<Tracking> states_;  // [J] the current row
+  std::vector<double> raw_;       // [J,3] of the current row, in the file's axes
+  std::vector<Tracking> states_;  // [J] of the current row
 };
 
 struct TrackedNode {
@@ -265,7 +266,8 @@ struct TrackedNode {
   std::optional<Quantity<3>> acceleration, angular_velocity;
 };
 
-/// A quantity is read only if every node has it, because ImuContent holds for all of them.
+/// Reads nodes. A quantity is read only if every node has it, because ImuContent describes all
+/// nodes.
 class BidsNodeReader final : public BidsReader<ImuReader> {
  public:
   BidsNodeReader(const BidsSystem& system, const StreamOptions& options, std::string_view file,
@@ -291,7 +293,7 @@ class BidsNodeReader final : public BidsReader<ImuReader> {
   const ImuContent& content() const { return header_->content; }
 
  private:
-  /// Appends a row of samples; a node's sample that lacks a number is invalid.
+  /// Appends one sample for each node. A sample is invalid if one of its numbers is missing.
   void append_row(ImuSamples& out) override {
     for (const TrackedNode& node : nodes_) {
       bool valid = true;
@@ -310,7 +312,7 @@ class BidsNodeReader final : public BidsReader<ImuReader> {
 
   template <std::size_t n>
   void take(const Quantity<n>& quantity, std::array<double, n>& out, bool& valid) {
-    // A missing part makes the sample of this node invalid, not that of others.
+    // A missing number makes only the sample of this node invalid.
     for (std::size_t k = 0; k < n; ++k) {
       valid = valid && rows_.missing[quantity.columns[k]] == 0;
       out[k] = quantity.scales[k] * rows_.values[quantity.columns[k]];
@@ -327,7 +329,7 @@ class BidsNodeReader final : public BidsReader<ImuReader> {
   ImuConverter samples_;
 };
 
-/// Fails if a channel's unit is no unit of its type.
+/// Fails if the unit of a channel is not allowed for its type.
 template <std::size_t n>
 Result<void> check_unit(const BidsSystem& system, const Quantity<n>& quantity) {
   for (std::size_t k = 0; k < n; ++k) {
@@ -339,8 +341,8 @@ Result<void> check_unit(const BidsSystem& system, const Quantity<n>& quantity) {
   return {};
 }
 
-/// Reader of all tracked points that have x, y and z; all must use one reference frame.
-/// Points without all three axes are skipped.
+/// Makes a reader of all tracked points that have x, y and z. Other points are skipped. All points
+/// must have the same reference frame.
 Result<std::unique_ptr<PointReader>> points_of(const BidsSystem& system,
                                                const StreamOptions& options,
                                                std::string_view file) {
@@ -348,9 +350,10 @@ Result<std::unique_ptr<PointReader>> points_of(const BidsSystem& system,
   for (const std::string& name : tracked_points(system)) {
     const auto places = find_quantity(system, name, "POS", bids_axes);
     if (!places) continue;
-    // With metres_per_unit the unit of the file does not matter.
+    // If the user gave metres_per_unit, the unit in the file does not matter.
     if (options.metres_per_unit <= 0.0) KA_TRY(check_unit(system, *places));
-    // Positions in two frames would need a transform that BIDS does not state.
+    // Positions in two frames can't be combined, because BIDS does not state the transform between
+    // frames.
     if (!points.empty() && points.front().places.frame != places->frame) {
       return refuse("one reference_frame for all POS channels", shown(places->frame));
     }
@@ -361,7 +364,8 @@ Result<std::unique_ptr<PointReader>> points_of(const BidsSystem& system,
   return std::make_unique<BidsPointReader>(system, options, file, std::move(points), axes);
 }
 
-/// Reader of all tracked points that have an orientation, an acceleration or an angular velocity.
+/// Makes a reader of all tracked points with an orientation, an acceleration or an angular
+/// velocity.
 Result<std::unique_ptr<ImuReader>> nodes_of(const BidsSystem& system, const StreamOptions& options,
                                             std::string_view file) {
   std::vector<TrackedNode> nodes;
@@ -372,21 +376,21 @@ Result<std::unique_ptr<ImuReader>> nodes_of(const BidsSystem& system, const Stre
                      find_quantity(system, name, "GYRO", bids_axes)};
     if (node.acceleration) KA_TRY(check_unit(system, *node.acceleration));
     if (node.angular_velocity) KA_TRY(check_unit(system, *node.angular_velocity));
-    // The frame of the orientations is the world; vectors are in the sensor's own space.
+    // The frame of the orientations is the world. Vectors are in sensor space.
     if (node.orientation) axes = KA_TRY(space_of(system, node.orientation->frame, options));
-    // A quaternion has no unit; a wrong one in the table does no harm.
+    // A quaternion has no unit, so a unit in the table is ignored.
     if (node.orientation) node.orientation->scales = {1.0, 1.0, 1.0, 1.0};
     if (node.orientation || node.acceleration || node.angular_velocity)
       nodes.push_back(std::move(node));
   }
   if (nodes.empty()) return refuse("ORNT channels of a quaternion, ACCEL or GYRO channels", "none");
-  // A mirrored orientation is no rotation.
+  // In a left-handed space, an orientation is not a rotation.
   if (determinant(axes) != 1) {
     return refuse("orientations in a right-handed space", "left-handed SpatialAxes");
   }
   auto reader = std::make_unique<BidsNodeReader>(system, options, file, std::move(nodes), axes);
   const ImuContent& content = reader->content();
-  // At least one quantity must be common to all nodes.
+  // All nodes must have at least one quantity in common.
   if (content.orientation || content.acceleration || content.angular_velocity) return reader;
   return refuse("ORNT, ACCEL or GYRO of every node", "nodes without a common quantity");
 }

@@ -13,7 +13,7 @@ namespace kinalign {
 namespace {
 
 constexpr std::string_view motion_ending = "motion.tsv";
-// The limits on what is read into memory.
+// The largest files that are read into memory, bytes.
 constexpr std::size_t largest_table = std::size_t{16} << 20, largest_json = std::size_t{1} << 20;
 
 struct SidecarPaths {
@@ -21,7 +21,8 @@ struct SidecarPaths {
   std::string channels_tsv, motion_json, channels_json, scans_tsv;
 };
 
-/// scans.tsv lies in the folder above motion/. Its name has the subject and the session.
+/// The path of scans.tsv, which is in the folder above motion/. Its name contains the subject and
+/// the session.
 std::string scans_path_of(const std::string& path) {
   const auto name = parse_bids_name(file_name(path));
   std::string_view above = folder(path);
@@ -32,13 +33,13 @@ std::string scans_path_of(const std::string& path) {
   return out + "_scans.tsv";
 }
 
-// Sidecars have the name of the data with another ending.
+// The paths of the sidecar files, which have the name of the data file with another ending.
 SidecarPaths paths_of(const std::string& path) {
   const std::string stem = path.substr(0, path.size() - motion_ending.size());
   return {stem + "channels.tsv", stem + "motion.json", stem + "channels.json", scans_path_of(path)};
 }
 
-// Opening for one byte is enough to know.
+// True if the file can be opened. One byte is enough to know.
 bool is_there(FileSystem& files, const std::string& path) {
   return !path.empty() && InputFile::open(files, path, 1).has_value();
 }
@@ -51,14 +52,14 @@ Result<double> read_rate(FileSystem& files, const std::string& path) {
   const auto json = KA_TRY(read_json(files, path));
   const auto rate = json.find("SamplingFrequency");
   const bool number = rate != json.end() && rate->is_number();
-  // A number written as a text is not accepted.
+  // The rate must be a number and not a text.
   const double hz = number ? rate->get<double>() : 0.0;
   if (hz >= 1e-3 && hz <= 1e6) return hz;
   return refuse(path, "a SamplingFrequency of 0.001 to 1,000,000",
                 number ? std::to_string(hz) : "none");
 }
 
-/// The file's start in scans.tsv; empty if there is no such file, row or valid time.
+/// The start of the file in scans.tsv. The result is empty if file, row or a valid time is missing.
 Result<std::optional<Time>> read_onset(FileSystem& files, const std::string& scans,
                                        const std::string& path) {
   std::optional<Time> out;
@@ -67,7 +68,7 @@ Result<std::optional<Time>> read_onset(FileSystem& files, const std::string& sca
   const auto file = table.column("filename"), time = table.column("acq_time");
   if (!file || !time) return out;
   const std::string wanted = "motion/" + std::string(file_name(path));
-  // Rows of other files are skipped. The last match counts.
+  // Rows of other files are skipped. If several rows match, the last one is used.
   for (const auto& row : table.rows) {
     if (row.size() <= std::max(*file, *time) || row[*file] != wanted) continue;
     out = parse_acq_time(row[*time]);
@@ -79,7 +80,8 @@ Result<std::optional<Time>> read_onset(FileSystem& files, const std::string& sca
 
 bool named_as_bids_motion(std::string_view path) {
   const auto name = parse_bids_name(file_name(path));
-  // The name must tell the system, because several lie in one folder.
+  // The name must contain the tracking system, because a folder may contain files of several
+  // systems.
   return name && name->ending == motion_ending && !name->label("tracksys").empty();
 }
 
@@ -110,7 +112,7 @@ Result<BidsSystem> read_bids_system(FileSystem& files, const std::string& path) 
   if (is_there(files, paths.channels_json)) {
     out.letters = frames_in(KA_TRY(read_json(files, paths.channels_json)));
   }
-  // A file without an onset has stamps from 0 on.
+  // Without an onset, the stamps of a file begin at 0.
   out.onset = KA_TRY(read_onset(files, paths.scans_tsv, path));
   return out;
 }

@@ -10,7 +10,7 @@ namespace kinalign {
 namespace {
 
 std::vector<std::string> cells_of(std::string_view line) {
-  // Lines may end in CR LF.
+  // Lines may end with CR LF.
   if (line.ends_with('\r')) line.remove_suffix(1);
   const auto cells = split(line, '\t');
   return {cells.begin(), cells.end()};
@@ -51,7 +51,7 @@ TsvTable read_tsv(std::string_view text) {
 }
 
 std::string tsv_cell(std::string_view text) {
-  // BIDS allows no empty cells.
+  // BIDS does not allow empty cells.
   if (text.empty()) return "n/a";
   std::string out(text);
   std::replace_if(

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A small tab-separated table with a header line: channels.tsv, participants.tsv, scans.tsv.
+// A small tab-separated table with a header line, such as channels.tsv, participants.tsv or
+// scans.tsv.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -12,7 +13,7 @@
 
 namespace kinalign {
 
-/// A cell is found by the name of its column, since columns may stand in any order.
+/// A table. A cell is found by the name of its column, because columns may have any order.
 struct TsvTable {
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;
@@ -20,13 +21,13 @@ struct TsvTable {
   std::optional<std::size_t> column(std::string_view name) const;
 };
 
-/// The parts between the delimiters: "a//b" has three, of which one is empty.
+/// The parts between the delimiters. "a//b" has three parts, and the second is empty.
 std::vector<std::string_view> split(std::string_view text, char delimiter);
 
-/// Rows may be longer or shorter than the header line. The last line may be empty.
+/// Reads a table. Rows may be longer or shorter than the header line. The last line may be empty.
 TsvTable read_tsv(std::string_view text);
 
-/// A cell for `text`: "n/a" if it is empty; tabs and line ends become blanks.
+/// A cell that contains `text`; "n/a" if the text is empty. Tabs and line ends become blanks.
 std::string tsv_cell(std::string_view text);
 
 std::string write_tsv(const TsvTable& table);

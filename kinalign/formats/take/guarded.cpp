@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The child sends messages to the parent. Each has one letter ('d' data, 'p' progress, 'e' an
-// error, '.' done), four bytes of length, and that many bytes. The parent accepts no length above
-// `message_most`.
+// The child process sends messages to the parent process. A message has a letter ('d' data, 'p'
+// progress, 'e' an error, '.' done), its length in four bytes, and its content. The parent accepts
+// at most `message_most` bytes of content.
 #include "kinalign/formats/take/guarded.h"
 
 #include "kinalign/core/file_calls.h"
@@ -26,13 +26,13 @@ namespace kinalign {
 
 namespace {
 
-// 1 MiB. A damaged child can't make the parent allocate more.
+// 1 MiB. The limit keeps a damaged child from making the parent allocate more.
 constexpr std::size_t message_most = std::size_t{1} << 20;
 constexpr std::size_t head_size = 5;
-// Exit code of a child that ran out of memory.
+// The exit code of a child that has no more memory.
 constexpr int no_memory_code = 77;
 
-// ---- the child
+// ---- The child process.
 
 bool write_all(int pipe, std::string_view bytes) {
   return put_all(bytes, [pipe](std::string_view rest) {
@@ -40,7 +40,7 @@ bool write_all(int pipe, std::string_view bytes) {
          }) == 0;
 }
 
-/// Head and body are two writes; the reader joins whatever pieces arrive.
+/// Sends a message in two writes, one for the head and one for the content.
 bool send(int pipe, char kind, std::string_view bytes) {
   char head[head_size] = {kind};
   const auto size = static_cast<std::uint32_t>(bytes.size());
@@ -48,19 +48,19 @@ bool send(int pipe, char kind, std::string_view bytes) {
   return write_all(pipe, {head, head_size}) && write_all(pipe, bytes);
 }
 
-/// An error as the bytes of a message: its parts, separated by NUL.
+/// Converts an error to the content of a message: its parts with NUL characters between them.
 std::string packed(const Error& error) {
   std::string out =
       std::to_string(error.line) + '\0' + std::to_string(static_cast<int>(error.kind));
   for (const std::string* text : {&error.file, &error.expected, &error.found}) {
-    // Long texts are cut, so that all five parts together stay below message_most.
+    // Long texts are cut, so that all five parts together are shorter than message_most.
     out += '\0' + text->substr(0, message_most / 8);
   }
   return out;
 }
 
-/// Bytes of address space that the process uses.
-/// RLIMIT_AS limits all of the address space, so the limit must include what the parent had mapped
+/// The bytes of address space that the process uses. RLIMIT_AS limits the whole address space, so
+/// the limit must include what the parent used before.
 /// before.
 [[maybe_unused]] rlim_t mapped_bytes() {
   unsigned long pages = 0;
@@ -71,7 +71,7 @@ std::string packed(const Error& error) {
   return static_cast<rlim_t>(pages) * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
 }
 
-/// A limit can't be raised above the hard limit that the process has.
+/// Sets a limit. A limit can't be raised above the present hard limit of the process.
 void limit(__rlimit_resource what, rlim_t soft, rlim_t hard) {
   rlimit now{};
   ::getrlimit(what, &now);
@@ -80,33 +80,34 @@ void limit(__rlimit_resource what, rlim_t soft, rlim_t hard) {
 }
 
 void set_limits(const GuardLimits& limits) {
-  // No core file: a crash here is expected, and the file may be private.
+  // No core file is written, because a crash is expected and the file may be private.
   limit(RLIMIT_CORE, 0, 0);
-  // SIGXCPU comes at the soft limit and names the cause; SIGKILL a second later.
+  // The soft limit sends SIGXCPU, which shows the cause. A second later the hard limit sends
+  // SIGKILL.
   limit(RLIMIT_CPU, limits.cpu_seconds, limits.cpu_seconds + 1);
 #ifndef KINALIGN_SANITIZED  // sanitizers reserve terabytes of address space
   const rlim_t memory = mapped_bytes() + limits.memory_bytes;
   limit(RLIMIT_AS, memory, memory);
 #endif
-  // A lack of memory ends the child at once, with a code of its own.
+  // A lack of memory ends the child at once with a special exit code.
   std::set_new_handler([] { ::_exit(no_memory_code); });
 }
 
-/// Resets signals to their default, so that a crash and Ctrl-C end the child, whatever the parent
+/// Resets signals to their default, so that a crash or Ctrl-C ends the child, whatever the parent
 /// does with these signals.
 void reset_signals() {
   for (const int number : {SIGINT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU}) {
     ::signal(number, SIG_DFL);
   }
-  // write() then fails with EPIPE if the parent has ended.
+  // If the parent has ended, write() now fails with EPIPE instead of a signal.
   ::signal(SIGPIPE, SIG_IGN);
 }
 
-// The general form of the work. The three overloads of run_guarded() adapt to it.
+// The general form of the work. The three forms of run_guarded() convert to it.
 using Work = std::function<Result<void>(const GuardSend&, const Progress&)>;
 using Receive = std::function<Result<void>(std::string_view)>;
 
-/// Progress of a job; sent as the bytes of a message.
+/// The progress of a job, sent as the content of a message.
 struct Step {
   std::uint64_t done = 0, total = 0;
 };
@@ -117,14 +118,14 @@ std::string packed(const Step& step, std::string_view what) {
   return out.append(what.substr(0, message_most / 8));
 }
 
-/// Runs the work in the child, sends its result, and ends the process.
+/// Runs the work in the child, sends the result, and ends the process.
 [[noreturn]] void run_child(int pipe, const GuardLimits& limits, const Work& work) {
-  // If the parent dies, the child must not go on alone.
+  // If the parent dies, the system kills the child.
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  // The limits come before the first byte of the file is read.
+  // The limits are set before any byte of the file is read.
   reset_signals();
   set_limits(limits);
-  // Longer data are sent in several messages.
+  // Data that are longer than a message are sent in several messages.
   const GuardSend send_data = [pipe](std::string_view bytes) -> Result<void> {
     for (; !bytes.empty(); bytes.remove_prefix(std::min(bytes.size(), message_most))) {
       if (!send(pipe, 'd', bytes.substr(0, message_most))) {
@@ -137,16 +138,16 @@ std::string packed(const Step& step, std::string_view what) {
                                          std::uint64_t total) {
     return send(pipe, 'p', packed(Step{done, total}, what));
   };
-  // An exception would leave here uncaught and abort the child; the parent reports that as a crash.
+  // An exception that is not caught aborts the child. The parent reports this as a crash.
   const Result<void> done = work(send_data, child_progress);
   const bool is_sent = done ? send(pipe, '.', "") : send(pipe, 'e', packed(done.error()));
-  ::_exit(is_sent ? 0 : 1);  // skips destructors and buffers that belong to the parent
+  ::_exit(is_sent ? 0 : 1);  // skips destructors and buffers of the parent
 }
 
-// ---- the parent
+// ---- The parent process.
 
-/// Owns the child: kills it if it still runs, and keeps its exit status.
-/// Every way out of run() destroys the Child, so no process and no descriptor is left behind.
+/// Owns the child process: kills it if it still runs, and keeps its exit status. All paths out of
+/// run() destroy the Child object, so no process and no descriptor stays open.
 class Child {
  public:
   Child(pid_t id, int pipe) : id_(id), pipe_(pipe) {}
@@ -158,11 +159,12 @@ class Child {
   }
 
   int pipe() const { return pipe_; }
-  /// Ends the child and returns its exit status. Call it once the child has closed its pipe, or if
-  /// its messages are no longer wanted. A child that ended by itself did so before its pipe closed,
-  /// and can't be killed any more.
+  /// Ends the child and returns its exit status. Call this when the child has closed its pipe, or
+  /// when its messages are not needed any more. A child that ends by itself does so before its pipe
+  /// closes, so kill() does not change its exit status.
   int end() {
-    // kill() of a child that has ended does no harm: its id is taken until waitpid() returns.
+    // kill() does no harm to a child that has ended, because its id stays in use until waitpid()
+    // returns.
     ::kill(id_, SIGKILL);
     int status = 0;
     while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
@@ -177,8 +179,8 @@ class Child {
   bool ended_ = false;
 };
 
-/// The error in the bytes that packed() makes. It accepts any bytes, because the child may be
-/// damaged.
+/// The error in the content of a message from packed(). Any bytes are accepted, because the child
+/// may be damaged.
 Error unpacked(std::string_view bytes) {
   Error error;
   std::string line, kind;
@@ -188,7 +190,7 @@ Error unpacked(std::string_view bytes) {
     bytes.remove_prefix(std::min(end + 1, bytes.size()));
   }
   error.line = std::strtoll(line.c_str(), nullptr, 10);
-  // An unknown kind stays ErrorKind::other.
+  // An unknown number gives ErrorKind::other.
   const unsigned long number = std::strtoul(kind.c_str(), nullptr, 10);
   if (number <= static_cast<unsigned long>(last_error_kind)) {
     error.kind = static_cast<ErrorKind>(number);
@@ -196,13 +198,13 @@ Error unpacked(std::string_view bytes) {
   return error;
 }
 
-// The kind of `blame` is not taken over: it belongs to another error.
+// An error about the child, with file and `expected` from `blame`. The kind of `blame` belongs to
+// another error and is not used.
 Error blamed(const Error& blame, const std::string& found) {
   return {blame.file, blame.line, blame.expected, found};
 }
 
-/// Text for the end of a child that sent no error.
-/// The exit status is all that is known of such a child.
+/// Describes the end of a child that sent no error. Only its exit status is known.
 std::string cause(int status, const GuardLimits& limits) {
   if (WIFSIGNALED(status)) {
     const int number = WTERMSIG(status);
@@ -219,22 +221,21 @@ std::string cause(int status, const GuardLimits& limits) {
   return "a file that ended the program that read it";
 }
 
-/// Splits the received bytes into messages.
-/// The child may be taken over by a hostile file, so nothing in a message is trusted: lengths are
-/// limited, and only known letters have a meaning.
+/// Splits the received bytes into messages. A hostile file may control the child, so every message
+/// is checked: the length is limited, and only known letters are accepted.
 class Inbox {
  public:
   Inbox(const Receive& receive, const Progress& progress)
       : receive_(receive), progress_(progress) {}
 
-  /// Takes the next bytes. False at a message that no child of ours sends.
+  /// Takes the next bytes. Returns false if a message is not valid.
   Result<bool> take(std::string_view bytes) {
     pending_ += bytes;
     std::size_t at = 0;
     while (pending_.size() - at >= head_size) {
       std::uint32_t size = 0;
       std::memcpy(&size, pending_.data() + at + 1, sizeof size);
-      // Nothing after a wrong length can be understood.
+      // After a wrong length, the following bytes have no known meaning.
       if (size > message_most) {
         strange_ = true;
         return false;
@@ -242,7 +243,7 @@ class Inbox {
       if (pending_.size() - at < head_size + size) break;
       const auto body = std::string_view(pending_).substr(at + head_size, size);
       const char kind = pending_[at];
-      // `receive` runs in this process, so its error is an ordinary one.
+      // `receive` runs in the parent, so its error is returned directly.
       if (kind == 'd') KA_TRY(receive_(body));
       if (kind == 'p' && !pass_on(body)) return Failure(interruption());
       if (kind == 'e') error_ = unpacked(body);
@@ -255,11 +256,11 @@ class Inbox {
 
   bool done() const { return done_; }
   bool strange() const { return strange_; }
-  /// The last error that the child sent.
+  /// The last error that the child sent; empty if there was none.
   const std::optional<Error>& error() const { return error_; }
 
  private:
-  /// Passes on a progress report. False if the user stops the job.
+  /// Passes on a progress report. Returns false if the user stops the job.
   bool pass_on(std::string_view body) const {
     Step step;
     if (body.size() < sizeof step) return true;
@@ -274,23 +275,23 @@ class Inbox {
   bool done_ = false, strange_ = false;
 };
 
-/// Reads until the child closes its pipe or sends an invalid message. False if its time is up.
-/// Fails at a signal that the program handles, which is Ctrl-C.
+/// Reads until the child closes its pipe or sends an invalid message. Returns false if the time
+/// limit is reached. Fails if a signal such as Ctrl-C arrives.
 Result<bool> read_until_end(const Child& child, double wall_seconds, Inbox& inbox) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
   std::string buffer(std::size_t{64} << 10, '\0');
   for (;;) {
-    // poll() waits a limited time, so that the wall clock is looked at.
+    // poll() waits for a limited time, so that the time limit is checked regularly.
     const double left = wall_seconds - std::chrono::duration<double>(Clock::now() - start).count();
     if (left <= 0) return false;
     pollfd waiting{child.pipe(), POLLIN, 0};
     const int ready = ::poll(&waiting, 1, static_cast<int>(std::min(left, 1000.0) * 1000.0) + 1);
-    // A signal without SA_RESTART: the user wants to stop.
+    // The program handles this signal, which means that the user wants to stop.
     if (ready < 0 && errno == EINTR) return Failure(interruption());
     if (ready <= 0) continue;
     const ssize_t got = ::read(child.pipe(), buffer.data(), buffer.size());
-    // The child has closed its end: it has ended or is about to.
+    // The child has closed its pipe: it has ended or will end soon.
     if (got == 0) return true;
     if (got < 0) continue;
     const std::string_view bytes(buffer.data(), static_cast<std::size_t>(got));
@@ -298,7 +299,7 @@ Result<bool> read_until_end(const Child& child, double wall_seconds, Inbox& inbo
   }
 }
 
-/// Starts the child, receives its messages, and turns a bad end into an error.
+/// Starts the child, receives its messages, and converts an abnormal end to an error.
 Result<void> run(const GuardLimits& limits, const Error& blame, const Work& work,
                  const Receive& receive, const Progress& progress) {
   int ends[2] = {-1, -1};
@@ -306,13 +307,13 @@ Result<void> run(const GuardLimits& limits, const Error& blame, const Work& work
     return refuse("a pipe to a child process", std::strerror(errno));
   }
   const pid_t id = ::fork();
-  // In the child. run_child() does not return.
+  // This part runs in the child. run_child() does not return.
   if (id == 0) {
     ::close(ends[0]);
     run_child(ends[1], limits, work);
   }
   const int code = errno;
-  // Only the child may hold the writing end. Otherwise the parent would never see its end.
+  // The parent closes its copy of the writing end. Otherwise reading would never reach the end.
   ::close(ends[1]);
   if (id < 0) {
     ::close(ends[0]);
@@ -324,9 +325,9 @@ Result<void> run(const GuardLimits& limits, const Error& blame, const Work& work
     const auto seconds = static_cast<std::int64_t>(limits.wall_seconds);
     return Failure(blamed(blame, "a file that took more than " + std::to_string(seconds) + " s"));
   }
-  // An error that the child sent is more exact than its exit status.
+  // An error from the child is more exact than its exit status.
   if (inbox.error()) return Failure(*inbox.error());
-  // A result that was sent completely counts, however the child ends.
+  // If the result is complete, it counts even if the child crashes later.
   if (inbox.done()) return {};
   const int status = child.end();
   return Failure(
@@ -351,7 +352,7 @@ Result<std::string> run_guarded(const GuardLimits& limits, const Error& blame,
     const std::string result = KA_TRY(work(child_progress));
     return send_data(result);
   };
-  // The limit protects the parent, which keeps the text.
+  // The limit protects the memory of the parent, which stores the text.
   const auto keep = [&](std::string_view bytes) -> Result<void> {
     if (text.size() + bytes.size() > limits.output_bytes) {
       return Failure(blamed(

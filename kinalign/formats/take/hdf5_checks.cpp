@@ -9,14 +9,15 @@ namespace kinalign::hdf5 {
 
 namespace {
 
-/// "[100,59,3]"
+/// The sizes as a text, for example "[100,59,3]".
 std::string written(const std::vector<std::uint64_t>& sizes) {
   std::string out = "[";
   for (const std::uint64_t size : sizes) out += (out.size() > 1 ? "," : "") + std::to_string(size);
   return out + "]";
 }
 
-/// Lengths of a data space of at most four dimensions; empty for anything else.
+/// The lengths of a data space with at most four dimensions. The result is empty for any other data
+/// space.
 std::optional<std::vector<std::uint64_t>> sizes_of(const Handle& space) {
   const int rank = H5Sget_simple_extent_ndims(space.id());
   if (rank < 0 || rank > 4) return std::nullopt;
@@ -27,18 +28,19 @@ std::optional<std::vector<std::uint64_t>> sizes_of(const Handle& space) {
   return std::vector<std::uint64_t>(sizes.begin(), sizes.end());
 }
 
-/// The number of bytes; empty if it overflows.
+/// The number of bytes of an array; empty if the number overflows.
 std::optional<std::uint64_t> product(std::uint64_t value_bytes,
                                      const std::vector<std::uint64_t>& sizes) {
   std::uint64_t bytes = value_bytes;
   for (const std::uint64_t size : sizes) {
-    // A hostile file may state lengths whose product is small after an overflow.
+    // After an overflow, the product of a hostile file's lengths could look small.
     if (__builtin_mul_overflow(bytes, size, &bytes)) return std::nullopt;
   }
   return bytes;
 }
 
-/// Texts of variable length lie elsewhere in the file, so only those of fixed length are read.
+/// True for text of fixed length. Text of variable length is stored elsewhere in the file and is
+/// not read.
 bool fixed_text(const Handle& type) {
   return H5Tget_class(type.id()) == H5T_STRING && H5Tis_variable_str(type.id()) == 0 &&
          H5Tget_size(type.id()) > 0;
@@ -46,7 +48,7 @@ bool fixed_text(const Handle& type) {
 
 }  // namespace
 
-/// The result of the checks of place(): the array lies whole within the file.
+/// A data set that has passed the checks of place(): the whole array is inside the file.
 struct Checked::Place {
   Handle type;
   std::vector<std::uint64_t> sizes;
@@ -54,7 +56,7 @@ struct Checked::Place {
 };
 
 bool has(hid_t group, const char* name) {
-  // Only hard links count: a link to another file is treated as absent.
+  // Only hard links count, so a link to another file counts as absent.
   H5L_info_t info{};
   return H5Lexists(group, name, H5P_DEFAULT) > 0 &&
          H5Lget_info(group, name, &info, H5P_DEFAULT) >= 0 && info.type == H5L_TYPE_HARD;
@@ -81,10 +83,11 @@ Failure Checked::other(const char* name, const std::string& expected,
   return refuse(bytes_.path(), std::string(name) + " as " + expected, found);
 }
 
-/// Type, size and position of a data set. Fails unless it is stored in one piece inside the file.
+/// The type, the size and the position of a data set. Fails unless the data set is stored in one
+/// piece inside the file.
 Result<Checked::Place> Checked::place(hid_t group, const char* name) const {
   if (!has(group, name)) return other(name, "a data set", "none");
-  // The handles close themselves on every way out.
+  // The handles close themselves, whichever way the function returns.
   const Handle set(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose);
   if (!set.good()) return failure(bytes_, std::string(name) + " as a data set");
   const Handle creation(H5Dget_create_plist(set.id()), H5Pclose);
@@ -93,7 +96,7 @@ Result<Checked::Place> Checked::place(hid_t group, const char* name) const {
   if (!creation.good() || !space.good() || !out.type.good()) {
     return failure(bytes_, std::string(name) + " as a data set");
   }
-  // Chunks, filters and external files would need HDF5 to read them.
+  // Chunks, filters and external files can be read only by HDF5 itself.
   if (H5Pget_layout(creation.id()) != H5D_CONTIGUOUS || H5Pget_external_count(creation.id()) != 0) {
     return other(name, "an array in one piece, uncompressed (h5repack -l CONTI -f NONE makes it)",
                  "another layout");
@@ -103,10 +106,10 @@ Result<Checked::Place> Checked::place(hid_t group, const char* name) const {
   out.sizes = *sizes;
   const auto length = product(H5Tget_size(out.type.id()), out.sizes);
   if (!length) return other(name, "an array that a file can hold", "sizes " + written(out.sizes));
-  // An empty array has no position.
+  // An array without values has no position.
   if (*length == 0) return out;
   out.at = H5Dget_offset(set.id());
-  // Written so that no sum can overflow.
+  // The comparison avoids sums that could overflow.
   if (out.at >= bytes_.size || *length > bytes_.size - out.at) {
     return other(name, "an array inside the file", "a position beyond its end");
   }
@@ -122,11 +125,11 @@ Result<std::uint64_t> Checked::rows(hid_t group, const char* name) const {
 Result<Source> Checked::find(hid_t group, const char* name, Stored stored,
                              const std::vector<std::uint64_t>& sizes) const {
   const Place found = KA_TRY(place(group, name));
-  // H5Tequal() compares byte order and size as well.
+  // H5Tequal() also compares byte order and size.
   if (H5Tequal(found.type.id(), type_of(stored)) <= 0) {
     return other(name, "numbers of " + std::to_string(size_of(stored)) + " bytes", "another type");
   }
-  // All lengths are known from the header, so they must be equal.
+  // The header determines all lengths, so the lengths in the file must be equal.
   if (found.sizes != sizes) return other(name, written(sizes), written(found.sizes));
   Source source{stored, found.at, 1};
   for (std::size_t i = 1; i < sizes.size(); ++i) source.row_values *= sizes[i];
@@ -141,7 +144,7 @@ Result<std::string> Checked::packed_texts(hid_t group, const char* name, std::ui
     return other(name, rank == 0 ? "one text" : "a list of texts", written(found.sizes));
   }
   width = H5Tget_size(found.type.id());
-  // place() has seen that so many bytes exist.
+  // place() has checked that so many bytes exist.
   std::string packed(*product(width, found.sizes), '\0');
   const Source source{Stored::uint8, found.at, 1};
   KA_TRY(read_rows(bytes_, source, 0, packed.size(), static_cast<void*>(packed.data())));
@@ -151,7 +154,7 @@ Result<std::string> Checked::packed_texts(hid_t group, const char* name, std::ui
 Result<std::string> Checked::text(hid_t group, const char* name) const {
   std::size_t width = 0;
   const std::string packed = KA_TRY(packed_texts(group, name, 0, width));
-  // Padded with NUL, so the first one ends the text.
+  // The text ends at the first NUL, because texts are padded with NUL characters.
   return packed.substr(0, packed.find('\0'));
 }
 
@@ -162,7 +165,7 @@ Result<std::vector<std::string>> Checked::texts(hid_t group, const char* name) c
 }
 
 Result<std::vector<std::string>> Checked::text_attributes(hid_t object, const char* name) const {
-  // An absent attribute means an empty list.
+  // An absent attribute stands for an empty list.
   if (H5Aexists(object, name) <= 0) return std::vector<std::string>{};
   const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
   const Handle type(H5Aget_type(attribute.id()), H5Tclose);
@@ -171,7 +174,7 @@ Result<std::vector<std::string>> Checked::text_attributes(hid_t object, const ch
   if (!type.good() || !sizes || sizes->size() > 1 || !fixed_text(type)) {
     return other(name, "an attribute of text", "something of another kind");
   }
-  // Attributes lie in the file, too, so they can't be larger than it.
+  // An attribute is stored in the file, so it can't be larger than the file.
   const std::size_t width = H5Tget_size(type.id());
   const auto length = product(width, *sizes);
   if (!length || *length > bytes_.size) {
@@ -191,7 +194,7 @@ Result<std::string> Checked::text_attribute(hid_t object, const char* name) cons
 }
 
 Result<std::vector<InputFacts>> Checked::inputs(hid_t group) const {
-  // Three attributes of equal length stand for a list of structures.
+  // Three attributes of equal length form a list of structures.
   const auto names = KA_TRY(text_attributes(group, "input_names"));
   const auto hashes = KA_TRY(text_attributes(group, "input_sha256"));
   std::vector<std::uint64_t> sizes(names.size());
@@ -211,7 +214,7 @@ Result<std::vector<InputFacts>> Checked::inputs(hid_t group) const {
   return out;
 }
 
-// Only the range of the file is read; the caller has room for it.
+// Reads only the wanted range of the file. The caller provides the memory.
 Result<void> read_rows(const Bytes& bytes, const Source& source, std::uint64_t first,
                        std::uint64_t count, void* to) {
   const std::uint64_t row = source.row_values * size_of(source.stored);
@@ -222,18 +225,18 @@ Result<void> read_rows(const Bytes& bytes, const Source& source, std::uint64_t f
   return refuse(bytes.path(), "a file that keeps its length", "a shorter file");
 }
 
-// A loop of its own becomes vector code.
+// This is a separate function, so that the compiler makes vector code from the loop.
 static void widen(std::span<const float> from, double* to) {
   for (std::size_t i = 0; i < from.size(); ++i) to[i] = static_cast<double>(from[i]);
 }
 
 Result<void> read_rows(const Bytes& bytes, const Source& source, std::uint64_t first,
                        std::uint64_t count, double* to) {
-  // No conversion is needed.
+  // Doubles need no conversion.
   if (source.stored == Stored::float64) {
     return read_rows(bytes, source, first, count, static_cast<void*>(to));
   }
-  // Works in pieces that stay in the cache between reading and widening.
+  // The rows are read in pieces that stay in the cache until they are converted.
   constexpr std::uint64_t piece_bytes = std::uint64_t{256} << 10;
   const std::uint64_t row_bytes = source.row_values * sizeof(float);
   const std::uint64_t piece =

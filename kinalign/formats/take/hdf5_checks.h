@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads an HDF5 file that may be hostile. A data set must have the expected type and shape, and be
-// stored in one piece, uncompressed, inside the file. Memory is allocated only after these checks.
-// They also exclude filters, plug-ins and links to other files.
+// Reads an HDF5 file that may be hostile. A data set must have the expected type and shape, and
+// must be stored in one piece, uncompressed, inside the file. Memory is allocated only after these
+// checks. The checks also exclude filters, plug-ins and links to other files.
 #pragma once
 
 #include "kinalign/formats/take/hdf5_file.h"
@@ -14,23 +14,22 @@
 
 namespace kinalign::hdf5 {
 
-/// Values at a known position of the file, row after row.
-/// `at` is a byte of the file. The rows are read from there without HDF5, so its code never sees
-/// them.
+/// Values at a known position in the file, row after row. `at` is a byte position. The rows are
+/// read from there without HDF5, so HDF5's code never handles them.
 struct Source {
   Stored stored = Stored::uint8;
   std::uint64_t at = 0;
-  /// Values in one row.
+  /// The number of values in one row.
   std::uint64_t row_values = 1;
 };
 
-/// True if the group has an object of that name. A link to another file does not count.
+/// True if the group contains an object with this name. A link to another file does not count.
 bool has(Id group, const char* name);
 
-/// HDF5's type for a type of ours.
+/// The type in HDF5 that corresponds to `stored`.
 Id type_of(Stored stored);
 
-/// Reads rows into values of their own type, or floats into doubles.
+/// Reads rows without conversion, or converts floats to doubles.
 Result<void> read_rows(const Bytes& bytes, const Source& source, std::uint64_t first,
                        std::uint64_t count, void* to);
 Result<void> read_rows(const Bytes& bytes, const Source& source, std::uint64_t first,
@@ -44,19 +43,20 @@ constexpr Stored stored_as() {
   return Stored::uint8;
 }
 
-/// Every function checks before it reads. An error names the array and the file.
+/// Every function checks an array before it reads the array. An error names the array and the file.
 class Checked {
  public:
   explicit Checked(const Bytes& bytes) : bytes_(bytes) {}
   const Bytes& bytes() const { return bytes_; }
 
-  /// Length of a data set's first dimension.
+  /// The length of a data set's first dimension.
   Result<std::uint64_t> rows(Id group, const char* name) const;
-  /// The data set's position, after checking its type and its `sizes`.
+  /// The position of a data set. Its type and its `sizes` are checked first.
   Result<Source> find(Id group, const char* name, Stored stored,
                       const std::vector<std::uint64_t>& sizes) const;
 
-  /// The whole array. `sizes` are the expected lengths, so the memory is known to be right.
+  /// All values of an array. `sizes` are the expected lengths, so the amount of memory is known in
+  /// advance.
   template <class Value>
   Result<std::vector<Value>> all(Id group, const char* name,
                                  const std::vector<std::uint64_t>& sizes) const {
@@ -66,12 +66,12 @@ class Checked {
     return values;
   }
 
-  /// A scalar text, or a list of texts.
+  /// A single text, or a list of texts.
   Result<std::string> text(Id group, const char* name) const;
   Result<std::vector<std::string>> texts(Id group, const char* name) const;
   Result<std::string> text_attribute(Id object, const char* name) const;
   Result<std::vector<std::string>> text_attributes(Id object, const char* name) const;
-  /// The files from which a stream was made.
+  /// Facts about the files from which a stream was made.
   Result<std::vector<InputFacts>> inputs(Id group) const;
 
  private:

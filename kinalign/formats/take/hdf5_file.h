@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wraps HDF5's C API: handles that close themselves, failures as errors, and a file driver of our
-// own, so that every byte goes through core's files. A failed write is kept and reported to HDF5 as
-// successful, because HDF5 1.10 can't close a file that it could not write.
+// Wraps the C functions of HDF5. Handles close themselves, and failures become errors. A file
+// driver makes HDF5 read and write with the functions of kinalign/core. If a write fails, the error
+// is kept and HDF5 gets no error, because HDF5 1.10 can't close a file after a failed write.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -17,13 +17,13 @@
 
 namespace kinalign::hdf5 {
 
-// Aliases of HDF5's types, so that <hdf5.h> stays in .cpp files; hdf5_file.cpp checks them.
+// Types of HDF5 under other names, so that only .cpp files include <hdf5.h>. hdf5_file.cpp checks
+// that they are equal.
 using Id = std::int64_t;          // hid_t
 using Size = unsigned long long;  // hsize_t
 
-/// Owns one of HDF5's identifiers.
-/// `close` is the function of HDF5 for this kind of identifier. reset() reports whether closing
-/// succeeded.
+/// Owns an identifier of HDF5. `close` is HDF5's function for this kind of identifier. reset()
+/// returns true if closing succeeded.
 class Handle {
  public:
   using Close = int (*)(Id);
@@ -48,27 +48,27 @@ class Handle {
   Close close_ = nullptr;
 };
 
-/// The file below HDF5: `input` or `output` is set. Must not move while HDF5 has the file open.
-/// HDF5 gets a pointer to it (access_to()).
+/// The file that HDF5 uses. Either `input` or `output` is set. The object must not move while HDF5
+/// has the file open, because HDF5 keeps a pointer to it.
 struct Bytes {
   InputFile* input = nullptr;
   OutputFile* output = nullptr;
   std::uint64_t size = 0;
-  std::optional<Error> failure;  // the first failure that HDF5 does not know of
+  std::optional<Error> failure;  // the first failure, which HDF5 did not get
 
   std::string path() const { return input != nullptr ? input->path() : output->path(); }
   Result<void> write(std::uint64_t at, std::string_view bytes);
 };
 
-/// Creates an empty file in a version that old HDF5 and MATLAB can read.
+/// Creates an empty file in a version of the format that old HDF5 and MATLAB can read.
 Result<Handle> create(Bytes& bytes);
-/// Opens a file for reading only. Loads no plug-in that the file might ask for.
+/// Opens a file for reading. Plug-ins that the file names are not loaded.
 Result<Handle> open(Bytes& bytes);
-/// The error "expected `expected`, found (HDF5's message about its last failure)".
-/// `expected` names the object that could not be read or made.
+/// The error "expected `expected`, found (HDF5's last message)". `expected` names the object that
+/// could not be read or created.
 Failure failure(const Bytes& bytes, std::string expected);
 
-/// Type and size of a data set or an attribute.
+/// The type and the size of a data set or an attribute.
 struct Shape {
   Id type = -1;             // HDF5's type
   std::vector<Size> sizes;  // empty: a scalar
@@ -77,15 +77,15 @@ struct Shape {
 Handle text_type(std::size_t bytes);  // fixed length, UTF-8, padded with NUL
 Handle space(const std::vector<Size>& sizes);
 Handle create_group(Id parent, const std::string& name);
-/// Creates a contiguous data set: it has a position in the file, but no bytes yet.
+/// Creates a data set in one piece. It has a position in the file, but its values are not written.
 Handle create_dataset(Id parent, const std::string& name, const Shape& shape);
 
 bool put_attribute(Id object, const char* name, const Shape& shape, const void* value);
 bool put_text(Id object, const char* name, std::string_view text);
 bool put_texts(Id object, const char* name, const std::vector<std::string>& texts);
 
-/// Texts padded to one length, at least one byte, one after the other.
-/// HDF5 stores a list of texts of fixed length in this form.
+/// Texts of a common length (at least one byte), one after the other. HDF5 stores a list of texts
+/// in this form.
 struct PackedTexts {
   std::size_t width = 1;
   std::string bytes;

@@ -14,20 +14,20 @@ namespace kinalign {
 
 namespace {
 
-/// Replaces the pose of invalid rows by that of the last valid row.
-/// The rows come in slabs, so the pose is kept from one slab to the next.
+/// Replaces the pose of each invalid row by the pose of the last valid row. Rows arrive in slabs
+/// (blocks of rows), so the pose is kept between slabs.
 class PoseHolder {
  public:
   explicit PoseHolder(std::size_t joints) : positions_(3 * joints), rotations_(4 * joints) {}
 
-  /// Sets the pose for rows before the first valid one. The first pass calls it with each valid
-  /// row; only the first call counts.
+  /// Sets the pose for rows before the first valid row. The first pass calls it for each valid row,
+  /// and only the first call has an effect.
   void begin_with(const ClipRows& rows, std::size_t i) {
     if (!std::exchange(known_, true)) keep(rows, i);
   }
 
-  /// Second pass: replaces the invalid rows among the first `count` rows.
-  /// Rows are changed in place; the caller writes them afterwards.
+  /// Second pass: replaces the invalid rows among the first `count` rows. The caller then writes
+  /// the changed rows.
   void hold(ClipRows& rows, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
       if (is_valid(rows, i)) {
@@ -41,7 +41,7 @@ class PoseHolder {
     }
   }
 
-  // An empty array means that all rows are valid: the stream is the reference.
+  // An empty array means that all rows are valid. The stream then is the reference of the take.
   static bool is_valid(const ClipRows& rows, std::size_t i) {
     return rows.valid.empty() || rows.valid[i] != 0;
   }
@@ -58,11 +58,11 @@ class PoseHolder {
   bool known_ = false;
 };
 
-/// Counts and steps of the rows, from the first pass.
+/// The number of rows and the times between them, from the first pass.
 struct RowSurvey {
   std::uint64_t rows = 0, invalid = 0;
   Time first{}, last{};
-  Duration shortest = Duration::max(), longest = Duration::min();  // between consecutive rows
+  Duration shortest = Duration::max(), longest = Duration::min();  // time between neighbouring rows
 
   void add(const std::vector<Time>& stamps, const ClipRows& clip) {
     for (std::size_t i = 0; i < stamps.size(); ++i) {
@@ -77,19 +77,20 @@ struct RowSurvey {
     }
   }
 
-  // One row has no step; 60 Hz is used.
+  // A single row has no time to the next row, so 60 Hz is used.
   double step_s() const {
     return rows > 1 ? seconds(last - first) / static_cast<double>(rows - 1) : 1.0 / 60.0;
   }
 };
 
-/// The stream to write: that of the first skeleton. `others`: names of the further ones.
+/// The stream to write, which has the first skeleton of the take. `others`: the names of streams
+/// with further skeletons.
 struct Chosen {
   std::size_t group = 0;
   std::string name, others;
 };
 
-// The first skeleton in the take's order.
+// Chooses the first skeleton in the order of the take.
 Result<Chosen> choose(const TakeHeader& header, const std::string& path) {
   Chosen out;
   for (std::size_t g = 0; g < header.groups.size(); ++g) {
@@ -106,7 +107,7 @@ Result<Chosen> choose(const TakeHeader& header, const std::string& path) {
   return refuse(path, "a take with a skeleton", "none");
 }
 
-/// Findings about everything that the BVH does not hold.
+/// Findings about data of the take that the BVH file does not contain.
 Findings lost(const std::string& path, const Chosen& chosen, const RowSurvey& survey) {
   Findings out;
   if (!chosen.others.empty()) {
@@ -120,7 +121,7 @@ Findings lost(const std::string& path, const Chosen& chosen, const RowSurvey& su
                 "these rows have the pose of the last valid row, because a BVH can't mark them");
   }
   const double step = survey.step_s();
-  // Differences of less than 1 % are not reported.
+  // Differences below 1 % are not reported.
   if (survey.rows > 2 && seconds(survey.longest - survey.shortest) > 0.01 * step) {
     add_warning(out,
                 {path, 0, "evenly spaced stamps",
@@ -139,16 +140,17 @@ Result<void> for_each_slab(TakeReader& reader, std::size_t group, Use&& use) {
   return {};
 }
 
-// A hostile take may hold any finite number.
+// Checks the size of numbers, because a hostile take may contain any finite number.
 Result<void> check_size(const std::string& path, const ClipRows& rows) {
-  constexpr double largest = 1e12;  // m: a BVH can still hold the number in centimetres
+  constexpr double largest = 1e12;  // m; a BVH file can contain this number in centimetres
   const auto small = [](double x) { return std::abs(x) < largest; };
   const auto& values = rows.local_positions;
   if (std::all_of(values.begin(), values.end(), small)) return {};
   return refuse(path, "positions below 1e12 m", "larger positions");
 }
 
-/// Results of the first pass: skeleton's channels, rows that are invalid, steps.
+/// The results of the first pass: channels of the skeleton, number of invalid rows, times between
+/// rows.
 struct FirstPass {
   FirstPass(Chosen stream, const Skeleton& skeleton)
       : chosen(std::move(stream)),
@@ -160,12 +162,12 @@ struct FirstPass {
   BvhChannels channels;
   PoseHolder holder;
   RowSurvey survey;
-  std::size_t row;  // numbers in a row's positions
+  std::size_t row;  // number of values in a row of positions
 
   void add(const std::vector<Time>& stamps, const ClipRows& rows) {
     survey.add(stamps, rows);
     for (std::size_t i = 0; i < stamps.size(); ++i) {
-      // Invalid rows hold zeros, which must not count as a movement.
+      // Invalid rows contain zeros, which are not movements.
       if (!PoseHolder::is_valid(rows, i)) continue;
       holder.begin_with(rows, i);
       channels.see(std::span(rows.local_positions).subspan(i * row, row));
@@ -173,7 +175,7 @@ struct FirstPass {
   }
 };
 
-// Skeleton and channels are known only after all rows have been seen.
+// The first pass. Skeleton and channels are known only after all rows.
 Result<FirstPass> look_through(FileSystem& files, const std::string& path) {
   TakeReader reader = KA_TRY(TakeReader::open(files, path));
   const Chosen chosen = KA_TRY(choose(reader.header(), path));
@@ -182,7 +184,7 @@ Result<FirstPass> look_through(FileSystem& files, const std::string& path) {
     pass.add(stamps, rows);
     return check_size(path, rows);
   }));
-  // Without a valid row there is no pose to write.
+  // Without a valid row, no pose can be written.
   if (pass.survey.rows == 0 || pass.survey.invalid < pass.survey.rows) return pass;
   return refuse(path, "a valid row of " + chosen.name, "none");
 }
@@ -190,12 +192,12 @@ Result<FirstPass> look_through(FileSystem& files, const std::string& path) {
 }  // namespace
 
 Result<Findings> take_to_bvh(FileSystem& files, const std::string& from, const FileSink& sink) {
-  // Both passes must read the same file.
+  // Both passes must read the same file, so its version is compared.
   const auto version = version_of(from);
   FirstPass pass = KA_TRY(look_through(files, from));
   const RowSurvey& survey = pass.survey;
   BvhWriter writer(pass.channels.hierarchy(survey.rows, survey.step_s()), survey.rows, 6, sink);
-  // The second pass opens the file again, at its first row.
+  // The second pass opens the file again, in order to begin at the first row.
   TakeReader reader = KA_TRY(TakeReader::open(files, from));
   KA_TRY(unchanged(from, version));
   std::vector<double> values;

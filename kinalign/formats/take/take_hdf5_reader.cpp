@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a take. Each data set must lie whole inside the file before memory is allocated for it.
+// Reads a take. Before memory is allocated for a data set, the data set must be completely inside
+// the file.
 #include "kinalign/documents/parameters_json.h"
 #include "kinalign/formats/take/hdf5_checks.h"
 #include "kinalign/formats/take/hdf5_file.h"
@@ -20,7 +21,7 @@ using hdf5::Bytes;
 using hdf5::Handle;
 using hdf5::Source;
 
-/// A column that was found in the file, with the type and shape that the header requires.
+/// A column in the file. Its type and shape are those that the header requires.
 struct Found {
   std::string name;
   Source source;
@@ -34,10 +35,10 @@ bool is_wanted(const std::vector<std::string>& wanted, const std::string& name) 
   return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
 
-/// True if all values are finite: 0 * x is NaN for NaN and infinity. Keeps several sums, so that an
-/// addition need not wait for the one before.
+/// True if all values are finite, because 0 * x is NaN for NaN and for infinity. Several sums are
+/// kept, so that an addition need not wait for the previous one.
 bool finite(std::span<const double> values) {
-  // 16 sums: the additions of one group do not depend on each other.
+  // Each of the 16 sums is independent of the others.
   constexpr std::size_t lanes = 16;
   std::array<double, lanes> sums{};
   const std::size_t even = values.size() / lanes * lanes;
@@ -48,7 +49,7 @@ bool finite(std::span<const double> values) {
   return std::accumulate(sums.begin(), sums.end(), 0.0) == 0.0;
 }
 
-/// Reads the end sites of a skeleton and checks that their joints exist.
+/// Reads the end sites of a skeleton. Checks that their joints exist.
 Result<std::vector<EndSite>> read_end_sites(const hdf5::Checked& file, hid_t group,
                                             std::uint64_t joints) {
   const Handle sites(H5Gopen2(group, "end_sites", H5P_DEFAULT), H5Gclose);
@@ -59,7 +60,7 @@ Result<std::vector<EndSite>> read_end_sites(const hdf5::Checked& file, hid_t gro
   if (!finite(tips)) return bad_value(file.bytes().path(), "finite numbers", "end_sites");
   std::vector<EndSite> out;
   for (std::size_t e = 0; e < count; ++e) {
-    // parents[j] of the skeleton itself is checked by validate().
+    // validate() checks the parents of the skeleton itself.
     if (parents[e] < 0 || static_cast<std::uint64_t>(parents[e]) >= joints) {
       return bad_value(file.bytes().path(), "an end site's joint", "end_sites");
     }
@@ -82,13 +83,13 @@ Result<Skeleton> read_skeleton(const hdf5::Checked& file, hid_t group) {
   return out;
 }
 
-/// Reads the names and content of a stream of nodes.
+/// Reads names and content of a stream of inertial nodes.
 Result<ImuGroup> read_imu(const hdf5::Checked& file, hid_t group) {
   ImuGroup out;
   out.node_names = KA_TRY(file.texts(group, "node_names"));
   out.root_node = KA_TRY(file.text_attribute(group, "root_node"));
   const auto gravity = KA_TRY(file.text_attributes(group, "gravity"));
-  // The list has a text per node; one node with gravity is enough here.
+  // The list contains a text for each node. One node with gravity is enough.
   out.content.gravity =
       std::find(gravity.begin(), gravity.end(), gravity_included) != gravity.end();
   out.content.orientation = hdf5::has(group, "orientation");
@@ -97,17 +98,17 @@ Result<ImuGroup> read_imu(const hdf5::Checked& file, hid_t group) {
   return out;
 }
 
-/// The space of the joints' positions; "take" if the file states none.
+/// The space of the joints' positions; "take" if the file does not state a space.
 std::string space_of(const hdf5::Checked& file, hid_t group) {
   const Handle positions(H5Dopen2(group, "positions", H5P_DEFAULT), H5Dclose);
   return file.text_attribute(positions.id(), "space").value_or("take");
 }
 
-/// Reads the header of one stream, without its rows.
+/// Reads the header of one stream without its rows.
 Result<TakeGroup> read_group(const hdf5::Checked& file, hid_t group, std::string name) {
   TakeGroup out;
   out.name = std::move(name);
-  // The reference has no such column: it keeps its own stamps.
+  // The reference stream does not have this column, because it keeps its own stamps.
   out.resampled = hdf5::has(group, "nearest_raw_ns");
   out.interval_known = hdf5::has(group, "time_interval_ns");
   out.files = KA_TRY(file.inputs(group));
@@ -127,8 +128,8 @@ Result<TakeGroup> read_group(const hdf5::Checked& file, hid_t group, std::string
 
 }  // namespace
 
-/// The open file, the header, and the position of each column.
-/// bytes points to input, and file to bytes, so a State never moves: it lives behind a unique_ptr.
+/// The open file, the header, and the position of each column. `bytes` points to `input`, and
+/// `file` to `bytes`. A State must therefore not move, so a std::unique_ptr owns it.
 struct TakeReader::State {
   explicit State(InputFile opened) : input(std::move(opened)) {
     bytes.input = &input;
@@ -142,9 +143,9 @@ struct TakeReader::State {
   TakeHeader header;
   std::string software;
   Source time;
-  // [streams][columns] in the order of columns_of(), without those that the parts leave out.
+  // [streams][columns] in the order of columns_of(), without columns that were not selected.
   std::vector<std::vector<Found>> columns;
-  // rows: the position of next(). last: its last stamp.
+  // rows: the position of next(). last: the last stamp before that position.
   std::uint64_t rows = 0, slab_rows = 4096;
   Time last = Time::min();
 
@@ -170,7 +171,7 @@ struct TakeReader::State {
   }
   template <class Flag>
   Result<void> check(const Found& column, std::span<const Flag> values) const {
-    // Tracking has three values, other flags two.
+    // Tracking has three values; other flags have two.
     constexpr int most = std::is_same_v<Flag, Tracking> ? 2 : 1;
     const bool good = std::all_of(values.begin(), values.end(),
                                   [](Flag v) { return static_cast<int>(v) <= most; });
@@ -179,7 +180,7 @@ struct TakeReader::State {
   }
 };
 
-/// Reads the root's text attributes and the parameters.
+/// Reads the text attributes of the whole take, and its parameters.
 Result<void> TakeReader::State::read_words() {
   const hid_t root = file.id();
   software = KA_TRY(checked.text_attribute(root, "software"));
@@ -196,7 +197,7 @@ Result<void> TakeReader::State::read_words() {
 
 Result<void> TakeReader::State::check_format() const {
   const auto format = checked.text_attributes(file.id(), "format");
-  // The format is checked before all else, so another HDF5 file gets one clear message.
+  // The format is checked first, so that another HDF5 file gets one clear message.
   if (!format || format->size() != 1 || !format->front().starts_with("kinalign.take/")) {
     return refuse(input.path(), "a take that kinalign wrote", "HDF5 of another kind");
   }
@@ -206,27 +207,27 @@ Result<void> TakeReader::State::check_format() const {
   return {};
 }
 
-/// Reads everything but the rows, and chooses the size of a slab.
+/// Reads everything except the rows, and chooses the size of a slab.
 Result<void> TakeReader::State::read_header(const TakeParts& parts) {
   const hid_t root = file.id();
   KA_TRY(check_format());
   KA_TRY(read_words());
   header.frames = KA_TRY(checked.rows(root, "time_ns"));
   time = KA_TRY(checked.find(root, "time_ns", Stored::int64, {header.frames}));
-  // A row of time_ns has eight bytes.
+  // A stamp in time_ns has eight bytes.
   std::uint64_t row_bytes = 8;
   for (const std::string& name : KA_TRY(checked.text_attributes(root, "streams"))) {
     if (is_wanted(parts.streams, name)) KA_TRY(find_stream(name, parts, row_bytes));
   }
   constexpr std::uint64_t slab_bytes = std::uint64_t{16} << 20;
-  // About 16 MiB a slab, and at most 4096 rows.
+  // A slab has at most 4096 rows or about 16 MiB.
   slab_rows = std::clamp<std::uint64_t>(slab_bytes / row_bytes, 1, 4096);
   return validate(header);
 }
 
 Result<void> TakeReader::State::find_stream(const std::string& name, const TakeParts& parts,
                                             std::uint64_t& row_bytes) {
-  // The name comes from the file; HDF5 looks it up in the file only.
+  // The name comes from the file. HDF5 only searches it in the same file.
   const Handle group(H5Gopen2(file.id(), name.c_str(), H5P_DEFAULT), H5Gclose);
   if (!group.good()) return hdf5::failure(bytes, "a group for each stream");
   header.groups.push_back(KA_TRY(read_group(checked, group.id(), name)));
@@ -236,7 +237,7 @@ Result<void> TakeReader::State::find_stream(const std::string& name, const TakeP
   return {};
 }
 
-/// Finds the columns of a stream that the parts select, in the order of columns_of().
+/// Finds the selected columns of a stream, in the order of columns_of().
 Result<void> TakeReader::State::find_columns(hid_t group, const TakeGroup& what,
                                              const TakeParts& parts, std::uint64_t& row_bytes) {
   const Precision precision = precision_of(header);
@@ -247,7 +248,7 @@ Result<void> TakeReader::State::find_columns(hid_t group, const TakeGroup& what,
     sizes.insert(sizes.end(), column.shape.begin(), column.shape.end());
     found.push_back(
         {column.name, KA_TRY(checked.find(group, column.name.c_str(), column.stored, sizes))});
-    // In memory every number is a double or less.
+    // In memory a number has at most eight bytes.
     row_bytes += column.row_values() * 8;
   }
   return {};
@@ -263,21 +264,22 @@ Result<void> TakeReader::State::read_stamps(std::uint64_t first, std::uint64_t c
   return bad_value(input.path(), "rising stamps", "time_ns");
 }
 
-/// Reads rows of all streams. A column that the parts leave out becomes empty.
+/// Reads rows of all streams. Columns that were not selected become empty.
 Result<void> TakeReader::State::read_slab(std::uint64_t first, std::uint64_t count,
                                           TakeSlab& slab) {
-  // A slab is used again and again, so its arrays keep their memory.
+  // The caller uses the same slab many times, so its arrays keep their memory.
   slab.first = first;
   slab.rows.resize(columns.size());
   KA_TRY(read_stamps(first, count, slab.stamps));
   for (std::size_t g = 0; g < columns.size(); ++g) {
     AnyRows& group = slab.rows[g];
     AnyRows kind = rows_for(header.groups[g]);
-    // Another kind of stream than in the slab before.
+    // The slab was used for another kind of stream before.
     if (group.index() != kind.index()) group = std::move(kind);
     auto column = columns[g].cbegin();
     const auto use = [&](std::string_view name, auto& values) -> Result<void> {
-      // The arrays come in the order of columns_of(). A name that is not next was left out.
+      // The arrays are in the order of columns_of(). If the name differs, the column was not
+      // selected.
       if (column == columns[g].cend() || column->name != name) {
         values.clear();
         return {};
@@ -297,11 +299,11 @@ TakeReader& TakeReader::operator=(TakeReader&& other) noexcept = default;
 TakeReader::~TakeReader() = default;
 
 Result<TakeReader> TakeReader::open(FileSystem& files, std::string path, const TakeParts& parts) {
-  // The state is made first, because HDF5 keeps a pointer to its bytes.
+  // The State is created first, because HDF5 keeps a pointer to its `bytes`.
   auto state = std::make_unique<State>(KA_TRY(InputFile::open(files, std::move(path))));
   state->file = KA_TRY(hdf5::open(state->bytes));
   auto read = state->read_header(parts);
-  // Errors of validate() have no file.
+  // Errors of validate() name no file.
   if (!read && read.error().file.empty()) {
     Error error = read.error();
     error.file = state->input.path();
@@ -319,7 +321,7 @@ Result<bool> TakeReader::next(TakeSlab& slab) {
   const std::uint64_t count = std::min(s.slab_rows, s.header.frames - s.rows);
   if (count == 0) return false;
   KA_TRY(s.read_slab(s.rows, count, slab));
-  // Within a slab read_stamps() has checked it; here across two slabs.
+  // read_stamps() has compared the stamps within a slab. This compares two neighbouring slabs.
   if (slab.stamps.front() <= s.last) {
     return bad_value(s.input.path(), "rising stamps", "time_ns");
   }
@@ -330,7 +332,7 @@ Result<bool> TakeReader::next(TakeSlab& slab) {
 
 Result<void> TakeReader::read(std::uint64_t first, std::uint64_t count, TakeSlab& slab) {
   const std::uint64_t frames = state_->header.frames;
-  // Written so that the sum can't overflow.
+  // The comparison avoids a sum that could overflow.
   if (first > frames || count > frames - first) {
     return refuse(state_->input.path(),
                   "rows " + std::to_string(first) + " to " + std::to_string(first + count),

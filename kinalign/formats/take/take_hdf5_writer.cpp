@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes a take. HDF5 lays out the file and writes its small parts. Rows are written directly to
-// the positions that HDF5 assigned.
+// Writes a take. HDF5 assigns the positions and writes the small parts. Rows are written directly
+// to these positions without HDF5.
 #include "kinalign/documents/parameters_json.h"
 #include "kinalign/documents/report_json.h"
 #include "kinalign/formats/take/hdf5_checks.h"
@@ -24,8 +24,8 @@ using hdf5::Shape;
 
 constexpr const char* can_hold = "a take that HDF5 can hold";
 
-/// A column whose position in the file is known.
-/// `at` never changes: contiguous arrays do not move.
+/// A column and its position in the file. `at` never changes, because arrays in one piece do not
+/// move.
 struct Placed {
   std::string name;
   Stored stored = Stored::uint8;
@@ -33,20 +33,20 @@ struct Placed {
   std::uint64_t at = 0;
 };
 
-/// Creates groups and data sets.
-/// Creates every object before the first row, so HDF5 decides on all positions early.
+/// Creates groups and data sets. All objects are created before the first row, so that HDF5 assigns
+/// all positions early.
 class Layout {
  public:
   explicit Layout(Bytes& bytes) : bytes_(bytes) {}
 
-  /// Creates a column of all rows; its values are written later.
+  /// Creates a column for all rows. Its values are written later.
   Result<Placed> column(hid_t parent, std::uint64_t frames, const TakeColumn& column) const {
     std::vector<hsize_t> sizes{frames};
     sizes.insert(sizes.end(), column.shape.begin(), column.shape.end());
     const Handle made =
         hdf5::create_dataset(parent, column.name, {hdf5::type_of(column.stored), sizes});
     if (!made.good()) return hdf5::failure(bytes_, can_hold);
-    // Attributes tell units and spaces to readers without this program.
+    // The attributes describe units and spaces to other programs.
     for (const auto& [name, text] : column.facts) {
       if (!hdf5::put_text(made.id(), name.c_str(), text)) return hdf5::failure(bytes_, can_hold);
     }
@@ -57,7 +57,7 @@ class Layout {
   Result<void> whole(hid_t parent, const char* name, const Shape& shape, const void* data,
                      const char* units = nullptr) const {
     const Handle made = hdf5::create_dataset(parent, name, shape);
-    // An array without values has nothing to write.
+    // An array without values needs no write.
     const bool empty = std::find(shape.sizes.begin(), shape.sizes.end(), 0U) != shape.sizes.end();
     if (!made.good() ||
         (!empty && H5Dwrite(made.id(), shape.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) ||
@@ -78,9 +78,9 @@ class Layout {
     return whole(parent, name, {type.id(), {texts.size()}}, packed.bytes.data());
   }
 
-  /// Writes a skeleton's arrays into the group.
+  /// Writes the arrays of a skeleton into a group.
   Result<void> skeleton(hid_t group, const Skeleton& skeleton) const {
-    // The vectors are written as they lie in memory.
+    // The vectors are written in the same form as in memory.
     static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(int) == 4);
     const std::size_t joints = skeleton.joints();
     KA_TRY(whole(group, "parents", {H5T_STD_I32LE, {joints}}, skeleton.parents.data()));
@@ -94,7 +94,7 @@ class Layout {
     return whole(made.id(), "offsets", {H5T_IEEE_F64LE, {count, 3}}, sites.offsets.data(), "m");
   }
 
-  /// The failure of an earlier write, which HDF5 does not know of.
+  /// Returns the failure of an earlier write, which HDF5 did not get.
   Result<void> check() const {
     if (bytes_.failure) return Failure(*bytes_.failure);
     return {};
@@ -104,14 +104,14 @@ class Layout {
   Bytes& bytes_;
 };
 
-/// Stores names, hashes and sizes of the files from which a stream was made.
-/// Three attributes of equal length; readers join them by position.
+/// Stores names, hashes and sizes of the files from which a stream was made. Three attributes of
+/// equal length form the list.
 bool put_inputs(hid_t group, const std::vector<InputFacts>& files) {
   std::vector<std::string> names;
   std::vector<std::string> hashes;
   std::vector<std::uint64_t> sizes;
   for (const InputFacts& file : files) {
-    // A take must not tell the folders of its author.
+    // Only a part of the path is stored, so that a take does not reveal the author's folders.
     names.push_back(remembered_path(file.name));
     hashes.push_back(file.sha256);
     sizes.push_back(file.bytes);
@@ -126,7 +126,7 @@ bool put_inputs(hid_t group, const std::vector<InputFacts>& files) {
 bool put_root_attributes(hid_t root, const TakeHeader& header) {
   std::vector<std::string> names;
   for (const TakeGroup& group : header.groups) names.push_back(group.name);
-  // MATLAB sees dimensions in reverse order; this attribute says so.
+  // This attribute tells MATLAB that it shows the dimensions in reverse order.
   const int reversed = 1;
   return hdf5::put_text(root, "format", "kinalign.take/1") &&
          hdf5::put_text(root, "software", take_software()) &&
@@ -139,8 +139,8 @@ bool put_root_attributes(hid_t root, const TakeHeader& header) {
 
 }  // namespace
 
-/// The file that is being written, and the position of each column.
-/// output holds the bytes, and HDF5 has pointers into this object, so it never moves.
+/// The file that is being written, and the position of each column. HDF5 has pointers into this
+/// object, so it must not move. `output` contains the bytes.
 struct TakeWriter::State {
   explicit State(OutputFile opened) : output(std::move(opened)) { bytes.output = &output; }
 
@@ -159,7 +159,7 @@ struct TakeWriter::State {
   Result<void> reserve();
   Result<void> write_stamps(std::span<const Time> stamps);
 
-  /// Writes values of a column for the rows that follow those written so far.
+  /// Writes values of a column for the next rows.
   template <class Value>
   Result<void> write(const Placed& column, std::span<const Value> values) {
     // The position follows from the number of rows so far.
@@ -184,7 +184,7 @@ Result<void> TakeWriter::State::lay_out(const TakeHeader& header) {
       {"time_ns", Stored::int64, {}, {{"units", "ns since 1970-01-01T00:00:00 UTC"}}}));
   seconds = KA_TRY(
       layout.column(root, frames, {"seconds", Stored::float64, {}, {{"units", "s since t0_ns"}}}));
-  // t0 is known with the first row; until then 0 stands there.
+  // t0 is stored with the first row. Until then its value is 0.
   const std::int64_t zero = 0;
   KA_TRY(
       layout.whole(root, "t0_ns", {H5T_STD_I64LE, {}}, &zero, "ns since 1970-01-01T00:00:00 UTC"));
@@ -197,10 +197,10 @@ Result<void> TakeWriter::State::lay_out(const TakeHeader& header) {
   return reserve();
 }
 
-/// Reserves disk space for the whole file, so that a full disk fails now and not in the middle.
+/// Reserves disk space for the whole file, so that a full disk is reported before the rows.
 Result<void> TakeWriter::State::reserve() {
   hsize_t size = 0;
-  // HDF5 has assigned all positions, so the size is final but for the report.
+  // HDF5 has assigned all positions. Only the report will still increase the size.
   if (H5Fget_filesize(file.id(), &size) < 0) return hdf5::failure(bytes, can_hold);
   KA_TRY(output.reserve(size));
   bytes.size = std::max<std::uint64_t>(bytes.size, size);
@@ -230,7 +230,7 @@ Result<void> TakeWriter::State::lay_out(const TakeGroup& group, Precision precis
   return layout.check();
 }
 
-// `seconds` are the stamps since the first row, as doubles.
+// Writes the stamps. `seconds`: the times since the first row as doubles.
 Result<void> TakeWriter::State::write_stamps(std::span<const Time> stamps) {
   if (stamps.empty()) return {};
   if (rows == 0) {
@@ -252,7 +252,7 @@ std::string take_software() { return "kinalign " KINALIGN_VERSION; }
 
 Result<TakeWriter> TakeWriter::create(FileSystem& files, std::string path, Overwrite overwrite,
                                       const TakeHeader& header) {
-  // A name that can't be stored must be found before the file is made.
+  // The header is checked first, so that no file is created if a name can't be stored.
   KA_TRY(validate(header));
   auto state =
       std::make_unique<State>(KA_TRY(OutputFile::create(files, std::move(path), overwrite)));
@@ -263,14 +263,14 @@ Result<TakeWriter> TakeWriter::create(FileSystem& files, std::string path, Overw
 
 Result<void> TakeWriter::append(const TakeSlab& slab) {
   State& s = *state_;
-  // Broken promises of the caller, not faults of a file.
+  // These conditions are promises of the caller, so a fault here is a bug of the program.
   assert(slab.first == s.rows && slab.rows.size() == s.groups.size());
   assert(s.rows + slab.stamps.size() <= s.frames);
   const std::uint64_t count = slab.stamps.size();
   for (std::size_t g = 0; g < s.groups.size(); ++g) {
     auto column = s.groups[g].cbegin();
     const auto use = [&](std::string_view name, const auto& values) -> Result<void> {
-      // An array that the layout lacks is empty in the rows.
+      // If the layout does not contain an array, the array is empty in the rows.
       if (column == s.groups[g].cend() || column->name != name) return {};
       const std::span given(values);
       assert(given.size() * size_of(column->stored) == count * column->row_bytes);
@@ -278,10 +278,10 @@ Result<void> TakeWriter::append(const TakeSlab& slab) {
     };
     KA_TRY(
         std::visit([&](const auto& rows) { return for_each_row_array(rows, use); }, slab.rows[g]));
-    // Every column has got its rows.
+    // All columns have got their rows.
     assert(column == s.groups[g].cend());
   }
-  // `rows` is raised only after all arrays of the slab are written.
+  // `rows` increases only after all arrays of the slab are written.
   KA_TRY(s.write_stamps(slab.stamps));
   s.rows += count;
   return {};
@@ -291,12 +291,12 @@ Result<void> TakeWriter::finish(const AlignmentReport& report) {
   State& s = *state_;
   assert(s.rows == s.frames);
   const Layout layout(s.bytes);
-  // The report is known only now.
+  // The report exists only after all rows are written.
   KA_TRY(layout.text(s.file.id(), "report_json", report_json(report)));
-  // HDF5 writes its own parts when the file is closed.
+  // When the file is closed, HDF5 writes its remaining parts.
   if (!s.file.reset()) return hdf5::failure(s.bytes, can_hold);
   KA_TRY(layout.check());
-  // Only now the file gets its name.
+  // The file gets its name only if everything is written.
   return s.output.commit();
 }
 

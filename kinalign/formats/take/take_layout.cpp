@@ -26,7 +26,8 @@ Facts rotation_facts(std::string space) {
   return {{"order", "w,x,y,z"}, {"space", std::move(space)}};
 }
 
-// A root's space is the take's, unless the stream was not brought into it.
+// The columns of a stream with a skeleton. A root's space is that of the take, unless the stream
+// was not converted to it.
 std::vector<TakeColumn> clip_columns(const Skeleton& skeleton, const TakeGroup& group,
                                      Stored number) {
   const std::uint64_t joints = skeleton.joints();
@@ -37,7 +38,7 @@ std::vector<TakeColumn> clip_columns(const Skeleton& skeleton, const TakeGroup& 
       {"positions", number, {joints, 3}, facts("m", group.space)},
       {"local_positions", number, {joints, 3}, facts("m", parent_space)},
       {"local_rotations", number, {joints, 4}, rotation_facts(parent_space)}};
-  // The reference is valid in every row, so it has no such column.
+  // All rows of the reference stream are valid, so it has no column `valid`.
   if (group.resampled) out.push_back({"valid", Stored::uint8, {}, {{"values", "0 no, 1 yes"}}});
   return out;
 }
@@ -48,21 +49,21 @@ std::vector<TakeColumn> point_columns(std::uint64_t joints, const TakeGroup& gro
           {"valid", Stored::uint8, {joints}, {{"values", "0 no, 1 yes"}}}};
 }
 
-/// The columns of a group of nodes, with the space in which each vector is given.
+/// The columns of a stream of nodes. Each column names the space of its vectors.
 std::vector<TakeColumn> imu_columns(const ImuGroup& group, Stored number) {
   const std::uint64_t nodes = group.node_names.size();
   const std::string& root = group.root_node;
   const std::string space = root.empty() ? "each node's own, as mounted" : root;
   std::vector<TakeColumn> out;
   if (group.content.orientation) {
-    // With a root node, only the root's own orientation is in the world.
+    // If there is a root node, only its own orientation is in the world.
     const std::string turned = root.empty() ? "world" : root + "; its own: world";
     out.push_back({"orientation", number, {nodes, 4}, rotation_facts(turned)});
   }
   if (group.content.acceleration) {
     Facts described = facts("m/s2", space);
     const std::string gravity = group.content.gravity ? gravity_included : gravity_removed;
-    // With a root node only the root's acceleration still contains gravity.
+    // If there is a root node, only its own acceleration still contains gravity.
     const bool differs = group.content.gravity && !root.empty();
     described.emplace_back("gravity", gravity + (differs ? " in " + root + " only" : ""));
     out.push_back({"acceleration", number, {nodes, 3}, std::move(described)});
@@ -81,7 +82,7 @@ Failure bad_name(const std::string& what, const std::string& name) {
 Result<void> check_names(const std::vector<std::string>& names, const std::string& what) {
   std::set<std::string_view> seen;
   for (const std::string& name : names) {
-    // A NUL would end the name for other programs.
+    // A NUL would end the name in other programs.
     if (name.empty() || name.find('\0') != std::string::npos) return bad_name(what, name);
     if (!seen.insert(name).second) return bad_name(what + ", only once", name);
   }
@@ -149,7 +150,7 @@ std::vector<TakeColumn> columns_of(const TakeGroup& group, Precision precision) 
   } else {
     const auto& imu = std::get<ImuGroup>(group.kind);
     out = imu_columns(imu, number);
-    // Nodes have their own distances; joints share those of the row.
+    // Each node has its own distance in time. All joints of a row share one distance.
     times = {imu.node_names.size()};
   }
   if (group.resampled) out.push_back({"nearest_raw_ns", Stored::int64, times, time_facts});
@@ -168,7 +169,7 @@ std::vector<std::string> labels_of(const TakeColumn& column, const TakeGroup& gr
   constexpr std::string_view none[] = {""}, vector[] = {".x", ".y", ".z"},
                              rotation[] = {".w", ".x", ".y", ".z"};
   std::span<const std::string_view> parts(none);
-  // Four numbers are a rotation, three a vector.
+  // Four numbers form a rotation, and three form a vector.
   if (column.shape.size() > 1)
     parts = column.shape[1] == 4 ? std::span(rotation) : std::span<const std::string_view>(vector);
   std::vector<std::string> out;
@@ -195,7 +196,7 @@ std::string stream_json(const TakeGroup& group) {
     out["root_node"] = imu->root_node;
     out["gravity"] = gravity_texts(*imu);
   }
-  // Names may hold bytes that are not UTF-8; each becomes U+FFFD.
+  // Names may contain bytes that are not UTF-8. Each such byte becomes U+FFFD.
   return out.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
@@ -213,7 +214,7 @@ Result<void> validate(const TakeHeader& header) {
 }
 
 void NumberStore::check_numbers([[maybe_unused]] std::span<const double> values) {
-  // NaN has no meaning in a take: masks say what is missing.
+  // A take must not contain NaN, because masks mark missing values.
   assert(std::none_of(values.begin(), values.end(), [](double v) { return std::isnan(v); }));
 }
 

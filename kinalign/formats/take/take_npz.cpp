@@ -12,7 +12,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::uint64_t most32 = 0xffffffffU;  // such a size refers to the ZIP64 field
+constexpr std::uint64_t most32 = 0xffffffffU;  // the real size is in the ZIP64 field
 constexpr std::size_t local_size = 30;
 
 /// Collects little-endian numbers, one after the other.
@@ -35,14 +35,14 @@ class Record {
   std::string bytes_;
 };
 
-// Numbers from here on stand in a ZIP64 field.
+// True for numbers that need a ZIP64 field.
 constexpr bool large(std::uint64_t value) { return value >= most32; }
 constexpr std::uint64_t cut(std::uint64_t value) { return std::min(value, most32); }
 
-/// Adds the fields from "version needed" to "uncompressed size", which both headers of a member
-/// have.
+/// Adds the fields from "version needed" to "uncompressed size". Both headers of a member contain
+/// them.
 Record& facts(Record& record, std::uint32_t checksum, std::uint64_t size, bool zip64) {
-  // 1 January 1980 is the first date that a ZIP can state.
+  // 1 January 1980 is the first date that a ZIP file can contain.
   const std::uint64_t first_of_1980 = 0x21;
   record.u16(zip64 ? 45 : 20).u16(0).u16(0).u16(0).u16(first_of_1980).u32(checksum);
   return record.u32(cut(size)).u32(cut(size));
@@ -51,7 +51,7 @@ Record& facts(Record& record, std::uint32_t checksum, std::uint64_t size, bool z
 std::string local_header(const std::string& name, std::uint32_t checksum, std::uint64_t size) {
   Record record;
   facts(record.u32(0x04034b50), checksum, size, large(size));
-  // 20 bytes: the ZIP64 field with its own head.
+  // The ZIP64 field and its head have 20 bytes.
   record.u16(name.size()).u16(large(size) ? 20 : 0).text(name);
   if (large(size)) record.u16(1).u16(16).u64(size).u64(size);
   return record.bytes();
@@ -62,10 +62,11 @@ struct Place {
   std::uint64_t size = 0;
 };
 
-/// A member's entry in the central directory; numbers that are too large go to the ZIP64 field.
+/// A member's entry in the central directory. Numbers that are too large are stored in the ZIP64
+/// field.
 std::string central_header(const std::string& name, std::uint32_t checksum, const Place& place) {
   Record extra;
-  // Only numbers that are too large may stand in this field (APPNOTE 4.5.3).
+  // The field must contain only the numbers that are too large (APPNOTE 4.5.3).
   if (large(place.size)) extra.u64(place.size).u64(place.size);
   if (large(place.at)) extra.u64(place.at);
   const std::size_t more = extra.bytes().size();
@@ -77,11 +78,11 @@ std::string central_header(const std::string& name, std::uint32_t checksum, cons
   return record.bytes();
 }
 
-/// The end record, preceded by the ZIP64 records if a number is too large for it.
+/// The end record. If a number is too large for it, the ZIP64 records come first.
 std::string end_of_directory(std::uint64_t count, const Place& directory) {
   Record record;
   if (large(directory.at) || large(directory.size) || count >= 0xffff) {
-    // The ZIP64 record follows the directory, and its locator points back to it.
+    // The ZIP64 record follows the directory. Its locator contains its position.
     const std::uint64_t end = directory.at + directory.size;
     record.u32(0x06064b50).u64(44).u16(45).u16(45).u32(0).u32(0).u64(count).u64(count);
     record.u64(directory.size).u64(directory.at);
@@ -92,8 +93,8 @@ std::string end_of_directory(std::uint64_t count, const Place& directory) {
   return record.u32(cut(directory.size)).u32(cut(directory.at)).u16(0).bytes();
 }
 
-/// The characters of a text in UTF-8. A byte that begins no character becomes the character of its
-/// value.
+/// The characters of a text in UTF-8. A byte that does not belong to a valid character becomes the
+/// character with its value.
 std::u32string characters(std::string_view text) {
   std::u32string out;
   while (!text.empty()) {
@@ -104,13 +105,13 @@ std::u32string characters(std::string_view text) {
   return out;
 }
 
-/// Content that is known before the rows, and the index of its array among all members.
+/// Content that is known before the rows, and the index of its array in the file.
 struct Fixed {
   std::size_t array;
   std::string bytes;
 };
 
-/// Collects the members of the file, in order.
+/// Collects the members of the file in order.
 struct Members {
   std::vector<NpzArray> arrays;
   std::vector<Fixed> fixed;
@@ -124,7 +125,7 @@ struct Members {
     add(std::move(made.array), made.bytes);
   }
   void add_vectors(const std::string& name, const std::vector<Vec3>& vectors) {
-    // The vectors are written as they lie in memory.
+    // The vectors are written in the same form as in memory.
     static_assert(sizeof(Vec3) == 3 * sizeof(double));
     const std::span numbers(reinterpret_cast<const double*>(vectors.data()), 3 * vectors.size());
     add(npz_numbers(name, Stored::float64, {vectors.size(), 3}), bytes_of(numbers));
@@ -146,8 +147,8 @@ void add_skeleton(Members& members, const std::string& prefix, const Skeleton& s
   members.add_vectors(prefix + "end_sites_offsets", sites.offsets);
 }
 
-/// Fails if two members have the same name. The name of a stream and of its array together may
-/// equal those of another stream.
+/// Fails if two members have the same name. This can happen, because a name joins the names of
+/// stream and array.
 Result<void> check_names(const std::vector<NpzArray>& arrays, const std::string& path) {
   std::set<std::string_view> seen;
   for (const NpzArray& array : arrays) {
@@ -163,12 +164,12 @@ Result<void> check_names(const std::vector<NpzArray>& arrays, const std::string&
 std::string npy_header(const NpzArray& array) {
   std::string shape;
   for (const std::uint64_t size : array.shape) shape += std::to_string(size) + ", ";
-  // Python writes (3, 4) and (3,): one length keeps its comma.
+  // Python writes (3, 4) and (3,): a comma follows a single length.
   if (array.shape.size() > 1) shape.erase(shape.size() - 2);
   if (array.shape.size() == 1) shape.pop_back();
   std::string text =
       "{'descr': '" + array.descr + "', 'fortran_order': False, 'shape': (" + shape + "), }";
-  // The header's length is a multiple of 64, with a line end as its last byte.
+  // The length of the header is a multiple of 64, and its last byte is a line end.
   constexpr std::size_t before = 10;
   text.append(63 - (before + text.size()) % 64, ' ');
   text += '\n';
@@ -182,16 +183,16 @@ std::uint64_t NpzArray::bytes() const {
 }
 
 NpzArray npz_numbers(std::string name, Stored stored, std::vector<std::uint64_t> shape) {
-  // In the order of Stored.
+  // The types in the order of Stored.
   constexpr const char* descrs[] = {"<f4", "<f8", "<i8", "<i4", "|u1"};
   return {std::move(name), descrs[static_cast<std::size_t>(stored)], size_of(stored),
           std::move(shape)};
 }
 
-/// Pads all texts with zeros to the length of the longest, as numpy does.
+/// Extends all texts with zeros to the length of the longest text, as numpy does.
 NpzTexts npz_texts(std::string name, const std::vector<std::string>& texts) {
   std::vector<std::u32string> all;
-  // numpy has no text of length 0.
+  // numpy does not allow texts of length 0.
   std::size_t width = 1;
   for (const std::string& text : texts) {
     all.push_back(characters(text));
@@ -215,15 +216,15 @@ Result<NpzWriter> NpzWriter::create(FileSystem& files, std::string path, Overwri
     member.name = array.name + ".npy";
     member.size = header.size() + array.bytes();
     member.header_at = at;
-    // The local header is written at the end, when its checksum is known. Its place is left free
-    // here.
+    // The space for the local header stays free here. The header is written at the end, when its
+    // checksum is known.
     at += local_size + member.name.size() + (large(member.size) ? 20 : 0);
     member.at = at;
     at += member.size;
     member.end = at;
     writer.members_.push_back(std::move(member));
   }
-  // A full disk is found before the rows are computed.
+  // A full disk is reported before the rows are computed.
   KA_TRY(writer.file_.reserve(at));
   for (std::size_t i = 0; i < arrays.size(); ++i) KA_TRY(writer.append(i, npy_header(arrays[i])));
   return writer;
@@ -234,7 +235,7 @@ Result<void> NpzWriter::append(std::size_t array, std::string_view bytes) {
   assert(bytes.size() <= member.end - member.at);
   KA_TRY(file_.write_at(member.at, bytes));
   member.at += bytes.size();
-  // CRC-32 goes on from where it was, so each member may grow piece by piece.
+  // The CRC-32 continues from its earlier value, so each member may grow in pieces.
   member.checksum = crc_of(bytes, member.checksum);
   return {};
 }
@@ -260,7 +261,7 @@ Result<TakeNpzWriter> TakeNpzWriter::create(FileSystem& files, std::string path,
   KA_TRY(validate(header));
   const Precision precision = precision_of(header);
   Members members;
-  // Member 0 has the stamps; append() relies on it.
+  // append() relies on the stamps being member 0.
   members.arrays.push_back(npz_numbers("time_ns", Stored::int64, {header.frames}));
   std::vector<std::vector<Column>> groups;
   for (const TakeGroup& group : header.groups) {
@@ -279,7 +280,7 @@ Result<TakeNpzWriter> TakeNpzWriter::create(FileSystem& files, std::string path,
   KA_TRY(check_names(members.arrays, path));
   TakeNpzWriter out(KA_TRY(NpzWriter::create(files, std::move(path), overwrite, members.arrays)),
                     std::move(groups));
-  // Names and skeletons do not wait for rows.
+  // Names and skeletons are written before the rows.
   for (const Fixed& fixed : members.fixed) {
     KA_TRY(out.writer_.append(fixed.array, fixed.bytes));
   }
@@ -290,7 +291,7 @@ Result<void> TakeNpzWriter::append(const TakeSlab& slab) {
   KA_TRY(writer_.append(0, bytes_of(std::span<const Time>(slab.stamps))));
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     auto column = groups_[g].cbegin();
-    // The same walk as in TakeWriter::append().
+    // The columns are handled in the same order as in TakeWriter::append().
     const auto use = [&](std::string_view name, const auto& values) -> Result<void> {
       if (column == groups_[g].cend() || column->name != name) return {};
       const Column& to = *column++;

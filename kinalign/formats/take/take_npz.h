@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes a take, or one stream, as numpy's NPZ. The names are those of the HDF5 file:
-// mocap_positions for /mocap/positions, or positions for a single stream. See docs/formats/take.md.
-// An NPZ is a ZIP of .npy members, here without compression. libzip is not used: it takes one
-// member after the other, while a take comes in slabs of all arrays at once. All lengths are known
-// in advance, so every byte has a fixed position; the checksums are written at the end. Dates are
-// 1980-01-01, so the same arrays give the same bytes. ZIP64 is used if a number needs it (APPNOTE
-// 6.3.10, 4.3 and 4.5.3).
+// Writes a take, or one stream, as a numpy NPZ file. The name mocap_positions corresponds to
+// /mocap/positions in the HDF5 file; with a single stream the name is positions. See
+// docs/formats/take.md.
+// An NPZ file is a ZIP file of .npy members, here without compression. libzip is not used, because
+// it writes the members one after the other, but a take arrives in slabs (blocks of rows) of all
+// arrays. All lengths are known in advance, so every byte has a fixed position. The checksums are
+// written at the end. All dates are 1980-01-01, so the same arrays give the same bytes. ZIP64 is
+// used if a number needs it (APPNOTE 6.3.10, 4.3 and 4.5.3).
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -22,20 +23,20 @@
 namespace kinalign {
 
 struct NpzArray {
-  std::string name;   // "positions": numpy.load(path)["positions"]
-  std::string descr;  // numpy's type: "<f4", "<i8", "|u1", "<U12"
+  std::string name;   // "positions" for numpy.load(path)["positions"]
+  std::string descr;  // numpy's name of the type: "<f4", "<i8", "|u1", "<U12"
   std::uint64_t value_bytes = 0;
-  std::vector<std::uint64_t> shape;  // {}: a scalar
+  std::vector<std::uint64_t> shape;  // {}: a single value
 
   std::uint64_t bytes() const;
 };
 
-/// The bytes before the values of a .npy file: numpy/lib/format.py, version 1.0. The values begin
-/// at a multiple of 64.
+/// The bytes before the values in a .npy file of version 1.0 (numpy/lib/format.py). The values
+/// begin at a multiple of 64.
 std::string npy_header(const NpzArray& array);
 
-/// npz_numbers() describes an array of numbers. npz_texts() makes an array of texts as numpy stores
-/// it: UTF-32, padded with zeros.
+/// npz_numbers() describes an array of numbers. npz_texts() makes an array of texts in numpy's
+/// form: UTF-32, extended with zeros.
 NpzArray npz_numbers(std::string name, Stored stored, std::vector<std::uint64_t> shape);
 struct NpzTexts {
   NpzArray array;
@@ -43,25 +44,25 @@ struct NpzTexts {
 };
 NpzTexts npz_texts(std::string name, const std::vector<std::string>& texts);
 
-/// The arrays may be appended in any order, since every position is known. The checksums are of all
-/// bytes so far.
+/// Writes arrays. They may be appended in any order, because every position is known. Each member's
+/// checksum covers the bytes appended so far.
 class NpzWriter {
  public:
-  /// Creates a file with these members in this order. The file at `path` appears only when finish()
-  /// has succeeded.
+  /// Creates a file with these members in this order. The file at `path` appears only if finish()
+  /// succeeds.
   static Result<NpzWriter> create(FileSystem& files, std::string path, Overwrite overwrite,
                                   const std::vector<NpzArray>& arrays);
 
-  /// Appends the next bytes of array number `array`.
+  /// Appends the next bytes of the array with the index `array`.
   Result<void> append(std::size_t array, std::string_view bytes);
-  /// Call after all bytes of all arrays.
+  /// Call this after all bytes of all arrays.
   Result<void> finish();
 
  private:
   struct Member {
     std::string name;
-    std::uint64_t header_at = 0;  // the member's local header
-    std::uint64_t size = 0;       // .npy header and values
+    std::uint64_t header_at = 0;  // position of the member's local header
+    std::uint64_t size = 0;       // bytes of the .npy header and the values
     std::uint64_t at = 0;         // position of the next bytes
     std::uint64_t end = 0;
     std::uint32_t checksum = 0;
@@ -73,18 +74,19 @@ class NpzWriter {
 };
 
 enum class NpzNames {
-  by_stream,  // mocap_positions
-  plain       // positions: for a header with one stream
+  by_stream,  // mocap_positions: stream and array
+  plain       // positions: only for a single stream
 };
 
-/// Column for column the same as TakeWriter, with the members of a ZIP in place of data sets.
+/// Writes a take. It has the same columns as TakeWriter, but as members of a ZIP file instead of
+/// data sets.
 class TakeNpzWriter {
  public:
   static Result<TakeNpzWriter> create(FileSystem& files, std::string path, Overwrite overwrite,
                                       const TakeHeader& header, NpzNames names);
   /// Appends the next rows of all streams.
   Result<void> append(const TakeSlab& slab);
-  /// Call after header.frames rows.
+  /// Call this after header.frames rows.
   Result<void> finish() { return writer_.finish(); }
 
  private:
