@@ -7,8 +7,8 @@ namespace kinalign {
 
 namespace {
 
-/// True for characters that move a terminal's cursor or change the writing direction. Terminals
-/// also obey U+0080 to U+009F.
+/// True for characters that move a terminal's cursor or change the writing direction. The codes
+/// U+0080 to U+009F belong to them, because terminals obey these, too.
 bool is_control(char32_t code) {
   const auto within = [code](char32_t first, char32_t last) {
     return code >= first && code <= last;
@@ -38,7 +38,7 @@ std::string without_controls(std::string_view text, std::string_view but = "") {
 }  // namespace
 
 std::string to_string(const Error& error) {
-  std::string text = without_controls(error.file);  // a file name may contain any byte
+  std::string text = without_controls(error.file);  // a name may contain any byte
   // Without a file name the place reads "line 12".
   if (error.line > 0) text += (text.empty() ? "line " : ":") + std::to_string(error.line);
   if (!text.empty()) text += ": ";

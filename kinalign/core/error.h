@@ -18,14 +18,14 @@ namespace kinalign {
 enum class ErrorKind : std::uint8_t {
   other,
   interrupted,           // the user stopped the job
-  directory,             // a file was expected
+  directory,             // the path names a directory instead of a file
   unreadable_disk,       // the system reports an input/output error
   no_such_file,          // reported for key files only
   exposed_key,           // other users may read the key file
   forbidden_key,         // this user may not read the key file
   port_taken,            // another program has the port
   port_forbidden,        // this user may not open the port
-  address_elsewhere,     // no interface of this machine has the address
+  address_elsewhere,     // this machine has no network interface with the address
   lost_process,          // another process of the same training ended and reports the reason
   no_such_joint,         // an option names a joint that the stream does not have
   no_such_node,          // an option names a node that the stream does not have
@@ -72,7 +72,7 @@ enum class Severity { note, warning, error };
 struct Finding {
   Severity severity = Severity::warning;
   Error what;
-  std::string meaning;  // the consequence for the result: "the last frame was dropped"
+  std::string meaning;  // the consequence for the result, such as "the last frame was dropped"
   std::string repair;   // advice for the user; empty if nothing needs to be done
 };
 
@@ -88,7 +88,7 @@ inline void add_warning(Findings& all, Error what, std::string meaning, std::str
 inline void add_note(Findings& all, Error what, std::string meaning, std::string repair = {}) {
   all.push_back({Severity::note, std::move(what), std::move(meaning), std::move(repair)});
 }
-/// Findings about one file, added one by one.
+/// Collects findings about one file.
 struct FileFindings {
   std::string file;
   Findings all{};
@@ -106,7 +106,7 @@ std::string_view to_string(Severity severity);
 /// A value, or the Error that prevented it. Exceptions of libraries are caught in the file that
 /// calls the library, so callers only check Results.
 template <class T>
-using Result = tl::expected<T, Error>;  // replace by std::expected when it is available
+using Result = tl::expected<T, Error>;  // to be replaced by std::expected
 using Failure = tl::unexpected<Error>;
 
 /// A failure that concerns a whole file, so it has no line.

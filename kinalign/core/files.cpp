@@ -78,7 +78,7 @@ Result<std::string_view> InputFile::next() {
     // file, too.
     const ssize_t got = file_.files().read(file_.fd(), buffer_.data(), buffer_.size());
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) {  // a disk may be unable to read a single page
+    if (got < 0) {  // a disk may fail to read a single page
       Failure failure = unreadable(path_, errno);
       failure.value().found += " at byte " + std::to_string(at_);
       return failure;
@@ -269,11 +269,11 @@ Result<void> OutputFile::place() {
 }
 
 Result<void> OutputFile::commit() {
-  // The data are synced before the file gets its name, so a named file is complete even after a
-  // power cut.
+  // The data are synced before the file gets its name. A file with a name is therefore complete
+  // even after a power cut.
   if (files_->sync(fd_) != 0) return failed(path_, "data that reach the disk", errno);
   KA_TRY(place());
-  sync_folder(*files_, path_);  // some file systems can't; the data are safe anyway
+  sync_folder(*files_, path_);  // may fail; the data are synced already
   discard();
   return {};
 }

@@ -27,9 +27,10 @@ class FileSystem {
   virtual int open(const char* path, int flags, mode_t mode) = 0;
   virtual ssize_t read(int fd, void* data, std::size_t size) = 0;
   virtual ssize_t write(int fd, const void* data, std::size_t size) = 0;
-  virtual ssize_t read_at(int fd, void* data, std::size_t size, off_t at) = 0;         // pread
-  virtual ssize_t write_at(int fd, const void* data, std::size_t size, off_t at) = 0;  // pwrite
-  virtual int allocate(int fd, off_t size) = 0;  // fallocate of all bytes up to `size`
+  virtual ssize_t read_at(int fd, void* data, std::size_t size, off_t at) = 0;  // calls pread
+  virtual ssize_t write_at(int fd, const void* data, std::size_t size,
+                           off_t at) = 0;        // calls pwrite
+  virtual int allocate(int fd, off_t size) = 0;  // fallocate for bytes 0 to `size`
   virtual int truncate(int fd, off_t size) = 0;
   virtual int sync(int fd) = 0;
   virtual int link(const char* from, const char* to) = 0;  // follows a /proc/self/fd link
@@ -88,8 +89,8 @@ class InputFile {
  public:
   static constexpr std::size_t piece_size = std::size_t{256} << 10;
 
-  /// Refuses files that are not regular: a pipe can't be read twice, a directory not at all.
-  /// `piece`: the size of a piece, for a caller that needs only the beginning.
+  /// Refuses files that are not regular, because a pipe can't be read twice and a directory not at
+  /// all. `piece`: the size of a piece, for a caller that needs only the beginning.
   static Result<InputFile> open(FileSystem& files, std::string path,
                                 std::size_t piece = piece_size);
 

@@ -55,7 +55,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
     least = letters;
     best = other;
   }
-  // A user may give only the beginning of a long name, which differs from it in many letters.
+  // A user may give only the beginning of a long name. It differs from the name in many letters.
   if (!best.empty() || start.size() < 3) return best;
   const auto begun = std::find_if(known.begin(), known.end(), [start](const std::string& other) {
     return other.starts_with(start);

@@ -75,7 +75,7 @@ char* put_whole(char* at, std::int64_t whole) {
 __attribute__((noinline)) char* put_decimals(char* at, double value, std::int64_t all,
                                              int decimals) {
   const auto power = static_cast<std::int64_t>(ten[static_cast<std::size_t>(decimals)]);
-  const auto whole = static_cast<std::int64_t>(value);  // faster than all / power
+  const auto whole = static_cast<std::int64_t>(value);  // faster than a division of `all`
   std::int64_t fraction = all - whole * power;
   at = put_whole(at, whole);
   if (decimals == 0) return at;

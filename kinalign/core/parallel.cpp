@@ -33,7 +33,7 @@ void parallel_for(std::size_t count, std::size_t jobs,
     try {
       for (std::size_t i = 1; i < threads; ++i) others.emplace_back(work);
     } catch (const std::system_error&) {
-      // No more threads are available; the threads already started do all the work.
+      // The system can't start more threads. The threads that run already do all the work.
     }
     work();
   }

@@ -43,7 +43,7 @@ class TextOut {
     held_.append(room.data(), static_cast<std::size_t>(end - room.data()));
   }
 
-  /// Ends a line. The buffer is written to the file when it is full.
+  /// Ends a line. If the buffer is full, its content is written to the file.
   Result<void> end_line() {
     held_ += '\n';
     return held_.size() < most_held ? Result<void>{} : flush();

@@ -10,7 +10,7 @@ namespace kinalign {
 struct ClipSurvey {
   Skeleton skeleton;
   StampSurvey survey;
-  double step_ns = 0.0;  // from one frame to the next
+  double step_ns = 0.0;  // time from one frame to the next
   InputFacts facts;
   Findings findings;
 };

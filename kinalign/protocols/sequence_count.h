@@ -68,9 +68,9 @@ class SequenceCount {
 
  private:
   struct State {
-    Counter numbers;            // since the last restart
+    Counter numbers;            // numbers since the last restart
     SequenceCounts counts;      // `lost` only counts numbers before the last restart
-    std::int64_t previous = 0;  // the number pushed last
+    std::int64_t previous = 0;  // the latest number
     std::uint64_t old_run = 0;  // packets in the current run of old numbers that rise by one
   };
 

@@ -36,7 +36,7 @@ bool speaks_another_protocol(std::string_view recorded_protocol, const SenderCou
 /// One message of the channel /counts: a sender and its counts so far in the take. Stream, address
 /// and node identify the sender.
 struct CountedSender {
-  std::string topic, stream, sender;  // topic: the channel of the sender's data
+  std::string topic, stream, sender;  // `topic`: the channel with the sender's data
   std::string node;                   // the id of an inertial node, else empty
   SenderCounts counts;
 };

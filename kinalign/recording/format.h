@@ -75,10 +75,10 @@ Ending ending_of(const McapMetadata& metadata);
 
 /// The description of a channel of a device's data, stored as the channel's metadata.
 struct RawChannel {
-  std::string stream;     // "mocap"
-  std::string protocol;   // "noitom"
-  std::string transport;  // "udp"
-  std::string sender;     // "192.168.7.20:51234"
+  std::string stream;     // the device's name, for example "mocap"
+  std::string protocol;   // for example "noitom"
+  std::string transport;  // for example "udp"
+  std::string sender;     // address and port, for example "192.168.7.20:51234"
   std::string node;       // only for inertial nodes: the id as a decimal number
   std::string place{};    // only for inertial nodes: the place on the body in lab.toml, if any
 

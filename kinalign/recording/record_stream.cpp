@@ -163,7 +163,7 @@ bool RecordStream::passes(Part& part, const McapMessage& message) {
 
 std::uint64_t RecordStream::missing() const {
   const Part& part = parts_.front();
-  // Other programs may number messages differently.
+  // Programs other than kinalign may number messages differently.
   const std::uint64_t by_number = part.is_ours ? numbers_.missing() : 0;
   // The file's own statistics count all messages, also those missing at the end, which numbers
   // don't show.

@@ -85,7 +85,7 @@ class Copier {
     return {};
   }
   Result<void> add(const McapMetadata& metadata) {
-    if (metadata.name == truncated_metadata) return {};  // finish() writes it
+    if (metadata.name == truncated_metadata) return {};  // finish() writes this record
     is_empty_ = false;
     KA_TRY(close_chunk());
     return writer_.write(to_facts(metadata) ? of_all_parts(metadata) : metadata);

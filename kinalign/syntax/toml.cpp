@@ -61,7 +61,7 @@ const toml::node* beyond_limit(const toml::node& node, std::size_t before) {
 // Lists and tables contain nodes, so this function and entries_in_order() call each other.
 Value value_of(const toml::node& node, std::string key, std::string path);
 
-/// The entries in the order of the file; toml++ sorts them by key.
+/// The entries in the order of the file, because toml++ sorts them by key.
 std::vector<Value> entries_in_order(const toml::table& table, const std::string& path) {
   std::vector<std::pair<std::string, const toml::node*>> entries;
   for (const auto& [key, value] : table) entries.emplace_back(key.str(), &value);

@@ -59,7 +59,7 @@ const char* refusal_name(NodeRefusal refusal);
 /// A datagram that arrived undamaged. Anyone may have sent it: until the MAC is checked, the origin
 /// may only be used to find the key.
 struct Envelope {
-  std::uint8_t version = 0;  // set for unknown versions too
+  std::uint8_t version = 0;  // set even if the version is unknown
   DatagramType type{};
   DatagramOrigin origin;
   bool has_mac = false;

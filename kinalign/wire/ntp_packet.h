@@ -58,9 +58,9 @@ struct NtpPacket {
 enum class [[nodiscard]] NtpRefusal : std::uint8_t{
     none,
     too_short,      // less than 48 bytes
-    wrong_version,  // 0 or above 4
+    wrong_version,  // version 0, or a version above 4
     wrong_mode,     // not from a client; attackers use modes 6 and 7 for amplification
-    wrong_trailer   // longer than 48 bytes, and the rest is neither an extension field nor a MAC
+    wrong_trailer   // more than 48 bytes, but neither extension fields nor a MAC
 };
 
 /// Reads the 48 bytes of the header, which must exist.

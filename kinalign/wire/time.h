@@ -12,9 +12,9 @@ namespace kinalign {
 
 using Duration = std::chrono::nanoseconds;
 
-struct UtcClock {};   // since 1970-01-01 UTC, leap seconds not counted (POSIX); ends in 2262
+struct UtcClock {};   // since 1970-01-01 UTC without leap seconds (POSIX); ends in 2262
 struct HostClock {};  // CLOCK_MONOTONIC_RAW since one start of a host: never stepped or slewed
-struct NodeClock {};  // since the node booted; meaningful only together with its boot id
+struct NodeClock {};  // since the node started; valid only together with its boot id
 
 using Time = std::chrono::time_point<UtcClock, Duration>;
 using HostTime = std::chrono::time_point<HostClock, Duration>;

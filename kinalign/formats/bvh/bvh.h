@@ -37,8 +37,8 @@ using Channel = std::uint8_t;
 /// so that writing gives the same text again.
 struct BvhHierarchy {
   std::vector<std::string> names;              // [J] as in the file; names may repeat
-  std::vector<int> parents;                    // [J] -1: a root
-  std::vector<Vec3> offsets;                   // [J]
+  std::vector<int> parents;                    // [J] index of each joint's parent; -1: a root
+  std::vector<Vec3> offsets;                   // [J] in the file's unit
   std::vector<std::vector<Channel>> channels;  // [J] in the order of the values in a row
   std::vector<EndSite> end_sites;
   int offset_decimals = 6;       // decimals of the numbers after OFFSET

@@ -112,7 +112,7 @@ class BvhValues {
     if (rows_) rows_->drop_frames();
   }
   std::uint64_t frames_read() const { return rows_ ? rows_->frames_read() : 0; }
-  int decimals() const { return rows_ ? rows_->decimals() : 0; }  // if count_decimals
+  int decimals() const { return rows_ ? rows_->decimals() : 0; }  // valid if count_decimals
   bool count_decimals = false;
 
  private:

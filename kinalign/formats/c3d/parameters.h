@@ -35,7 +35,7 @@ double c3d_f32(C3dProcessor processor, const std::uint8_t* at);
 enum class C3dType : std::int8_t { text = -1, byte = 1, i16 = 2, f32 = 4 };
 
 struct C3dParameter {
-  std::string group, name;  // in capitals
+  std::string group, name;  // in upper case
   C3dType type = C3dType::text;
   std::vector<std::uint8_t> dimensions;  // lengths, the fastest-varying first; empty: one value
   /// [product of dimensions] values of `type` as in the file.

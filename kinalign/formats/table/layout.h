@@ -63,16 +63,16 @@ struct TableLayout {
   std::size_t columns = 0;     // number of cells in a row if the columns have no names
 
   std::optional<TableTime> time;  // empty: the rows have the rate rate_hz
-  double rate_hz = 0.0;           // nominal; 0: unknown
+  double rate_hz = 0.0;           // nominal rate; 0: unknown
 
   std::vector<std::string> names;   // joints or nodes; empty only for imu: a single node
-  std::vector<FieldColumn> fields;  // the same for each joint or node
+  std::vector<FieldColumn> fields;  // fields of each joint or node
   /// True: columns are found by their names. False: they follow each other from first_column on.
   bool by_name = true;
   std::size_t first_column = 1;  // counted from 1
 
   Axes axes = y_up;              // from the file's axes; for imu: of the world, not of the sensors
-  double metres_per_unit = 1.0;  // for points
+  double metres_per_unit = 1.0;  // metres per unit of the file, for points
   StateValues state;
   /// [3] the position x, y, z that the file has for joints that were not seen; empty: no such
   /// position.
@@ -80,7 +80,7 @@ struct TableLayout {
 
   double acceleration_unit = 1.0;      // m/s2 per unit of the file
   double angular_velocity_unit = 1.0;  // rad/s per unit of the file
-  bool gravity = true;                 // true: gravity is part of the acceleration
+  bool gravity = true;                 // true: the acceleration contains gravity
 
   std::map<std::string, std::string> select;  // rows to read: column -> value in this column
   std::string body;                           // column with the body's number; empty: one body

@@ -19,8 +19,8 @@ namespace kinalign::hdf5 {
 
 // Types of HDF5 under other names, so that only .cpp files include <hdf5.h>. hdf5_file.cpp checks
 // that they are equal.
-using Id = std::int64_t;          // hid_t
-using Size = unsigned long long;  // hsize_t
+using Id = std::int64_t;          // HDF5's hid_t
+using Size = unsigned long long;  // HDF5's hsize_t
 
 /// Owns an identifier of HDF5. `close` is HDF5's function for this kind of identifier. reset()
 /// returns true if closing succeeded.

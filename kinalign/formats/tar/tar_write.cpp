@@ -24,15 +24,15 @@ std::string header_of(std::string_view name, std::uint64_t size, char kind) {
   std::string out(block, '\0');
   out.replace(0, name.size(), name);
   put_octal(out, 100, 8, 0644);
-  put_octal(out, 108, 8, 0);  // user
-  put_octal(out, 116, 8, 0);  // group
+  put_octal(out, 108, 8, 0);  // the user's id
+  put_octal(out, 116, 8, 0);  // the group's id
   put_octal(out, 124, 12, size);
-  put_octal(out, 136, 12, 0);  // time
+  put_octal(out, 136, 12, 0);  // the time of the last change
   // The format requires blanks here while the checksum is computed.
   out.replace(148, 8, "        ");
   out[156] = kind;
   out.replace(257, 8, std::string_view("ustar\00000", 8));
-  put_octal(out, 329, 8, 0);  // device
+  put_octal(out, 329, 8, 0);  // the device's number
   put_octal(out, 337, 8, 0);
   const auto sum = std::accumulate(out.begin(), out.end(), 0U, [](unsigned total, char c) {
     return total + static_cast<unsigned char>(c);

@@ -25,7 +25,7 @@ enum class XdfFormat : std::uint8_t { int8, int16, int32, int64, float32, double
 std::string_view name_of(XdfFormat format);
 
 struct XdfChannel {
-  std::string label, unit, type;  // texts of the header; empty if absent
+  std::string label, unit, type;  // texts in the header; empty if absent
 
   bool operator==(const XdfChannel&) const = default;
 };
@@ -38,7 +38,7 @@ struct XdfStream {
   XdfFormat format = XdfFormat::double64;
   /// One element for each channel. It is empty if the header does not describe the channels.
   std::vector<XdfChannel> channels;
-  std::string xml;  // the header as written
+  std::string xml;  // the header as it stands in the file
 
   bool operator==(const XdfStream&) const = default;
 };
@@ -136,12 +136,12 @@ bool looks_like_xdf(std::string_view head);
 struct XdfClockLine {
   double first = 0.0, last = 0.0;  // s, times of the first and the last offset
   double origin = 0.0;             // s, the time for which `offset` holds
-  double offset = 0.0;             // s, at the origin
+  double offset = 0.0;             // s, at the time `origin`
   double slope = 0.0;              // s/s; 0 if there is only one offset
   /// The number of offsets in the fit.
   std::size_t offsets = 0;
   double rms_residual = 0.0;      // s, over all offsets including outliers
-  double largest_residual = 0.0;  // s
+  double largest_residual = 0.0;  // largest distance of an offset from the line, s
 };
 
 /// Fits a line to each stretch between resets of the clock. `offsets` are the offsets of one stream
@@ -177,7 +177,7 @@ struct XdfStreamSurvey {
 struct XdfSurvey {
   std::uint64_t bytes = 0;
   std::vector<XdfStreamSurvey> streams;  // in the order of the file
-  Findings findings;                     // from the reader
+  Findings findings;                     // findings of the reader
 };
 
 Result<XdfSurvey> survey_xdf(FileSystem& files, const std::string& path, const Progress& progress);

@@ -27,7 +27,7 @@ struct Head {
   std::uint8_t flags = 0, joint_set = 0, bodies = 0, part = 0;
 };
 
-// ---- reading
+// ---- Functions for reading.
 
 // Magic, version and length were checked by the caller, so they are skipped here.
 Head take_head(LittleEndianReader& reader) {
@@ -175,7 +175,7 @@ Refusal open(std::span<const std::uint8_t> bytes) {
   return crc.take<std::uint32_t>() == crc32(checked) ? Refusal::none : Refusal::bad_crc;
 }
 
-// ---- writing
+// ---- Functions for writing.
 
 void put_head(std::vector<std::uint8_t>& out, const Head& head) {
   for (const std::uint8_t byte : kinect_magic) append_little(byte, out);

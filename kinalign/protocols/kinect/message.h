@@ -39,10 +39,10 @@ struct KinectHello {
 /// One person. The values come from the SDK and are not checked: a joint may be NaN.
 struct KinectBody {
   std::uint64_t id = 0;
-  std::uint8_t clipped_edges = 0;              // 1 right, 2 left, 4 top, 8 bottom
+  std::uint8_t clipped_edges = 0;              // a sum of 1 right, 2 left, 4 top, 8 bottom
   std::uint8_t hand_left = 0, hand_right = 0;  // HandState of the SDK, if the frame has hands
-  std::uint8_t hand_confidence = 0;  // 1: the left hand's confidence is high; 2: the right hand's
-  std::array<std::uint8_t, 25> states{};                  // TrackingState of the SDK
+  std::uint8_t hand_confidence = 0;            // bit 1: left hand high; bit 2: right hand high
+  std::array<std::uint8_t, 25> states{};       // TrackingState of the SDK
   std::array<float, std::size_t{25} * 3> positions{};     // [25,3] m, camera space
   std::array<float, std::size_t{25} * 4> orientations{};  // [25,4] w,x,y,z, if the frame has them
 };

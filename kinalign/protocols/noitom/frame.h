@@ -35,7 +35,8 @@ struct NoitomFrame {
   bool operator==(const NoitomFrame&) const = default;
 };
 
-/// Number of values in a frame: 180 or 354, and six more with a reference.
+/// The number of values in a frame: 180 without and 354 with displacement, and six more with a
+/// reference.
 std::size_t noitom_values(bool displacement, bool reference);
 
 /// Appends the frame's bytes with the new header, whatever its form. The number of values must fit

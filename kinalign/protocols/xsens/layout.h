@@ -16,7 +16,7 @@ constexpr std::size_t most_xsens_items = 256;
 /// The header of one datagram. A large sample is divided into several datagrams. These have the
 /// same character, type and counter.
 struct XsensHeader {
-  unsigned type = 0;          // 0 to 99
+  unsigned type = 0;          // type of the items, 0 to 99
   std::uint32_t counter = 0;  // number of the sample
   std::uint8_t index = 0;     // number of the datagram within the sample, 0 to 127
   bool last = false;          // true: the sample's last datagram

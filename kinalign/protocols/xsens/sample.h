@@ -23,7 +23,7 @@ struct XsensSegment {
   bool operator==(const XsensSegment&) const = default;
 };
 
-struct XsensPose {  // type 02
+struct XsensPose {  // the content of type 02
   std::vector<XsensSegment> segments;
 
   bool operator==(const XsensPose&) const = default;
@@ -49,14 +49,14 @@ struct XsensTracker {
   bool operator==(const XsensTracker&) const = default;
 };
 
-struct XsensTrackers {  // type 23
+struct XsensTrackers {  // the content of type 23
   std::vector<XsensTracker> trackers;
 
   bool operator==(const XsensTrackers&) const = default;
 };
 
 /// The sender's time of day, without a date.
-struct XsensTimeCode {     // type 25
+struct XsensTimeCode {     // the content of type 25
   Duration time_of_day{};  // since midnight, in whole milliseconds
 
   bool operator==(const XsensTimeCode&) const = default;

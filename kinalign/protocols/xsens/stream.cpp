@@ -13,7 +13,7 @@ namespace {
 // The bytes that are handled at once. The buffer therefore contains at most one incomplete datagram
 // and one slice, even if the caller passes a long piece.
 constexpr std::size_t slice = 4096;
-constexpr std::size_t marker = 6;          // "MXTP02"
+constexpr std::size_t marker = 6;          // the size of a marker such as "MXTP02"
 constexpr std::size_t most_channels = 48;  // 16 characters of three types
 // A channel keeps at most this many incomplete samples. If another sample begins, the oldest one is
 // dropped.

@@ -43,7 +43,7 @@ struct XsensCounts {
 struct XsensArrival {
   XsensSample sample;
   Order order = Order::newest;  // among the samples of its character and type
-  SequencePlace place{};        // among the same samples
+  SequencePlace place{};        // position among the same samples
 };
 
 /// Identifies the samples of one type of one character.

@@ -178,10 +178,10 @@ DeviceProtocol device_protocol() {
 std::optional<DeviceProtocol> rows_of(std::optional<Protocol> protocol, bool trackers);
 
 DeviceProtocol node_protocol();           // node_rows.cpp: kinalign's inertial nodes
-DeviceProtocol kinect_protocol();         // kinect_rows.cpp
-DeviceProtocol noitom_protocol();         // noitom_rows.cpp
-DeviceProtocol xsens_protocol();          // xsens_rows.cpp: poses
+DeviceProtocol kinect_protocol();         // kinect_rows.cpp: Kinects
+DeviceProtocol noitom_protocol();         // noitom_rows.cpp: poses of Noitom's suits
+DeviceProtocol xsens_protocol();          // xsens_rows.cpp: poses of Xsens MVN
 DeviceProtocol xsens_tracker_protocol();  // xsens_rows.cpp: inertial samples
-DeviceProtocol slimevr_protocol();        // slimevr_rows.cpp
+DeviceProtocol slimevr_protocol();        // slimevr_rows.cpp: SlimeVR trackers
 
 }  // namespace kinalign

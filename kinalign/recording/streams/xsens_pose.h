@@ -22,7 +22,7 @@ constexpr std::size_t xsens_segments = 23;
 std::uint32_t xsens_shape(const XsensPose& pose);
 std::uint32_t xsens_shape(const XsensTrackers& trackers);
 
-/// Decides for each shape, in the order of samples, whether the sample is accepted.
+/// Decides for each sample whether it is accepted, by the sample's shape (see xsens_shape()).
 template <class Items>
 class XsensFits;
 template <>
