@@ -13,8 +13,7 @@ namespace kinalign {
 namespace {
 
 constexpr int zstd_level = 1;
-constexpr std::uint64_t most_reserved = 16 << 20;  // limit on memory reserved before decompression,
-                                                   // bytes
+constexpr std::uint64_t most_reserved = 16 << 20;  // bytes, before decompression
 
 std::string compressed(std::string_view bytes) {
   // The buffer has the largest possible size, so a single call is enough.

@@ -81,8 +81,7 @@ struct McapMessage {
   std::uint16_t channel = 0;
   std::uint32_t sequence = 0;
   std::uint64_t log_time = 0, publish_time = 0;  // ns
-  std::string_view data;                         // view of bytes that belong to the reader or the
-                                                 // caller
+  std::string_view data;                         // a view of the reader's or caller's bytes
   /// The list does not include the data, which stand at the end of the record.
   static auto fields(auto& r) {
     return std::tie(r.channel, r.sequence, r.log_time, r.publish_time);

@@ -57,8 +57,7 @@ struct ProtocolRow {
   bool has_frame_decoder =
       false;                  // the recorder decodes frames and reports a stream without frames
   bool has_node_ids = false;  // senders state ids, so one device of a lab represents all of them
-  bool is_named_by_address = false;  // senders state no ids; address and sensor number form the
-                                     // name
+  bool is_named_by_address = false;  // the name is address and sensor number
 };
 
 /// All rows, in the order of the enum.

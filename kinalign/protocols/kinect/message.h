@@ -41,8 +41,8 @@ struct KinectBody {
   std::uint64_t id = 0;
   std::uint8_t clipped_edges = 0;              // a sum of 1 right, 2 left, 4 top, 8 bottom
   std::uint8_t hand_left = 0, hand_right = 0;  // HandState of the SDK, if the frame has hands
-  std::uint8_t hand_confidence = 0;            // bit 1: left hand high; bit 2: right hand high
-  std::array<std::uint8_t, 25> states{};       // TrackingState of the SDK
+  std::uint8_t hand_confidence = 0;       // 1: high for the left hand; 2: for the right; 3: both
+  std::array<std::uint8_t, 25> states{};  // TrackingState of the SDK
   std::array<float, std::size_t{25} * 3> positions{};     // [25,3] m, camera space
   std::array<float, std::size_t{25} * 4> orientations{};  // [25,4] w,x,y,z, if the frame has them
 };
@@ -52,13 +52,12 @@ struct KinectBody {
 struct KinectFrame {
   KinectOrigin origin;
   std::uint8_t part = 0;
-  bool more_parts = false;                    // more parts of this frame follow
-  std::int64_t device_ticks = 0;              // time of the frame on the sensor's clock
-  std::int64_t taken_ticks = 0;               // arrival of the frame at the sender, on the sender's
-                                              // clock
-  std::int64_t sent_ticks = 0;                // just before sending, on the sender's clock
-  std::optional<std::int64_t> utc_us;         // the sender's wall clock at taken_ticks, us
-  std::optional<std::array<float, 4>> floor;  // the floor's plane x,y,z,w
+  bool more_parts = false;                           // more parts of this frame follow
+  std::int64_t device_ticks = 0;                     // time of the frame on the sensor's clock
+  std::int64_t taken_ticks = 0;                      // arrival at the sender, on its clock
+  std::int64_t sent_ticks = 0;                       // just before sending, on the sender's clock
+  std::optional<std::int64_t> utc_us;                // the sender's wall clock at taken_ticks, us
+  std::optional<std::array<float, 4>> floor;         // the floor's plane x,y,z,w
   bool has_orientations = false, has_hands = false;  // false if there are no bodies
   std::vector<KinectBody> bodies;                    // at most 6
 };

@@ -29,8 +29,7 @@ struct Mark {
 inline constexpr std::size_t mark_kinds = 4;
 /// Limits for marks from other programs.
 inline constexpr double most_latency_ms = 60'000.0;
-inline constexpr std::size_t most_marks = 10'000;  // limit per recording; further marks are not
-                                                   // read
+inline constexpr std::size_t most_marks = 10'000;  // in a recording
 
 /// The kind's name in calls and in the output of --json, for example "t_pose".
 const char* name_of(Mark::Kind kind);

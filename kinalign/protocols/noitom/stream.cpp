@@ -18,8 +18,7 @@ constexpr std::size_t slice = 4096;
 // A frame in text form is shorter: it has at most 360 values of 40 characters, and a name.
 constexpr std::size_t longest_text = 16'384;
 constexpr std::size_t most_avatars = 64;
-constexpr std::size_t zipped_head = 10;  // the letters CCCC, a length, and the first bytes of gzip,
-                                         // 1F 8B
+constexpr std::size_t zipped_head = 10;  // CCCC, a length, and 1F 8B, which begin a gzip
 // The most values of a frame whose count is unknown to kinalign: 200 joints with displacement and a
 // reference.
 constexpr std::size_t most_values = 1206;

@@ -119,8 +119,7 @@ class NoitomDecoder {
   NoitomParts parts_;
   std::vector<std::uint8_t> held_;
   std::size_t at_ = 0;        // position in `held_`; the bytes before it are handled
-  std::size_t searched_ = 0;  // bytes known to contain no end of a text, or no header after a
-                              // misfit
+  std::size_t searched_ = 0;  // bytes searched for the end of a text or for a header
   /// Blanks that follow a text frame are not counted as skipped.
   bool behind_text_ = false;
   NoitomCounts counts_;

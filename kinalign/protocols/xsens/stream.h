@@ -31,8 +31,7 @@ struct XsensCounts {
   std::uint64_t samples = 0;        // samples that were output
   std::uint64_t bytes_skipped = 0;  // bytes that belong to no datagram
   std::array<std::uint64_t, static_cast<std::size_t>(XsensRefusal::count_of_refusals)> refused{};
-  std::array<std::uint64_t, 100> other_types{};  // datagrams of types that are not read; the index
-                                                 // is the type
+  std::array<std::uint64_t, 100> other_types{};  // skipped datagrams by type
 
   std::uint64_t operator[](XsensRefusal r) const { return refused[static_cast<std::size_t>(r)]; }
   bool operator==(const XsensCounts&) const = default;
