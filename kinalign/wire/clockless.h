@@ -39,7 +39,7 @@ struct ClocklessStamped {
 };
 /// Sent by the host to the node. It is never longer than the request.
 using ClocklessAnswer = ClocklessStamped<DatagramType::answer>;
-/// Sent by the host to the node directly after the answer. It repeats the answer's fields.
+/// Sent by the node to the host as soon as the answer arrives. It repeats the answer's fields.
 using ClocklessConfirm = ClocklessStamped<DatagramType::confirm>;
 
 /// Writes the datagram to the front of `out`. The result is empty if `out` is too small.
