@@ -106,7 +106,7 @@ std::string_view to_string(Severity severity);
 /// A value, or the Error that prevented it. Exceptions of libraries are caught in the file that
 /// calls the library, so callers only check Results.
 template <class T>
-using Result = tl::expected<T, Error>;  // to be replaced by std::expected
+using Result = tl::expected<T, Error>;  // C++23: std::expected
 using Failure = tl::unexpected<Error>;
 
 /// A failure that concerns a whole file, so it has no line.

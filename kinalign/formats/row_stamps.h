@@ -54,7 +54,8 @@ class RowStamps {
 
   /// True if the stamps of the first rows are final.
   bool settled() const { return settled_; }
-  /// Call this at the end of the file. It decides for a file with few rows.
+  /// Call this at the end of the file. In a file with few rows, it decides whether the time column
+  /// counts as stuck.
   void settle();
   /// Replaces the stamps of the rows that the caller kept by their final stamps. These are the
   /// first rows.

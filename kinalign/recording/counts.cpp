@@ -158,8 +158,8 @@ PortCounts since(const PortCounts& before, const PortCounts& now) {
 }
 
 std::uint64_t foreign_datagrams(const PortCounts& counts, std::uint64_t lost) {
-  // The kernel may have dropped the lost frames at the same buffer. Only the excess consists of
-  // foreign datagrams for sure.
+  // The kernel may have dropped the lost frames at the same buffer. Only the excess certainly
+  // consists of datagrams from other programs.
   return counts.sifted && counts.dropped > lost ? counts.dropped - lost : 0;
 }
 

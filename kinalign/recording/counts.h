@@ -28,7 +28,7 @@ McapSchema sender_counts_schema();
 SenderCounts since(const SenderCounts& before, const SenderCounts& now);
 /// The number of frames or, if the protocol is not decoded, of messages.
 std::uint64_t frames_or_messages(const SenderCounts& counts);
-/// True if stray datagrams alone would be fewer: any program may send one or two.
+/// True if these are too many for accidental datagrams. Any program may send one or two by mistake.
 constexpr bool are_many(std::uint64_t datagrams) { return datagrams >= 20; }
 /// True if the sender seems to use another protocol: kinalign decodes the protocol, and many
 /// messages contained no frame, not even a late or duplicate frame.

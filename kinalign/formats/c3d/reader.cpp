@@ -21,7 +21,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_zeros = 4096;  // most zero bytes in front of the header
+constexpr std::size_t most_zeros = 4096;  // limit on zero bytes before the header
 constexpr std::uint16_t saturated = 65'535;
 
 // The position of a block. Blocks are numbered from 1.

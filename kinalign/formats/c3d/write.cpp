@@ -20,7 +20,7 @@ constexpr std::size_t names_a_parameter = 255;
 constexpr std::size_t most_blocks = 255;  // largest size of the parameter section
 constexpr double millimetres = 1000.0;
 // The sink receives large pieces.
-constexpr std::size_t most_held = std::size_t{1} << 20;  // most bytes kept for the sink
+constexpr std::size_t most_held = std::size_t{1} << 20;  // limit on bytes kept for the sink
 
 void put_float(double value, std::string& out) {
   append_little(std::bit_cast<std::uint32_t>(static_cast<float>(value)), out);

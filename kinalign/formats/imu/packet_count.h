@@ -77,8 +77,8 @@ class PacketCount {
     const std::int64_t number = number_of(counter, s);
     s.bits = bits_of(counter, s);
     const std::int64_t newest = s.numbers.newest(), steps = number - newest;
-    // The counter wrapped, and the way is long. Lost packets and a restart of the device look the
-    // same here.
+    // The counter wrapped, and the number is far ahead. Either many packets were lost, or the
+    // device restarted.
     const bool fell = !s.numbers.empty() && number >> s.bits != newest >> s.bits;
     if (fell && steps > near) s.guessed = std::max(s.guessed, steps);
     const Counter::Place place = s.numbers.place_of(number);

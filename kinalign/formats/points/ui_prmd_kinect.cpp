@@ -42,7 +42,7 @@ Quat rotation(const double* degrees) {
 }
 
 /// Returns the rows of the file of angles, one at a time. It reads a piece of this file only when
-/// the rows of the other file need it, so both files are read in parallel.
+/// the rows of the other file need it, so both advance together.
 class AngleRows {
  public:
   AngleRows(std::string_view file, TextPieces pieces)

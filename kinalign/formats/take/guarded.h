@@ -20,7 +20,7 @@ struct GuardLimits {
   std::uint64_t memory_bytes = std::uint64_t{2} << 30;  // beyond the memory in use before
   std::uint64_t cpu_seconds = 600;
   double wall_seconds = 3600.0;
-  std::uint64_t output_bytes = std::uint64_t{1} << 30;  // for the forms that return a text
+  std::uint64_t output_bytes = std::uint64_t{1} << 30;  // for results that are a text
 };
 
 /// Sends bytes from the child to the parent. Fails if the parent has ended.

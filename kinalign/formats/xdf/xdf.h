@@ -124,7 +124,7 @@ class XdfReader {
   std::uint64_t offset_ = 0;  // position of held_[at_] in the file
   std::size_t searched_ = 0;  // number of bytes from at_ on that contain no beginning of a boundary
   bool begun_ = false, lost_ = false;
-  /// A stream without a value has a header that can't be used.
+  /// The streams by id. If a stream's header can't be used, its value is empty.
   std::map<std::uint32_t, std::optional<Stream>> streams_;
   std::vector<Fault> faults_;
 };

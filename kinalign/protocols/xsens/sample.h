@@ -69,7 +69,7 @@ struct XsensSample {
   std::uint32_t counter = 0;       // number of the sample
   std::uint32_t time_code_ms = 0;  // ms since the start of the recording
   std::uint8_t character = 0;
-  std::uint8_t body_segments = 0;  // 23; 0 in MVN before 2019
+  std::uint8_t body_segments = 0;  // segments of the body: 23; MVN before 2019: 0
   std::uint8_t props = 0;
   std::uint8_t finger_segments = 0;
   XsensItems body;

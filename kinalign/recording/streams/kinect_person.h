@@ -40,7 +40,7 @@ class KinectPerson {
   Vec3 place_ = Vec3::Zero();
   // The time of that position in ticks of the device; empty if not seen in this session.
   std::optional<std::int64_t> seen_;
-  // All ids, for the report. In others_: the ids seen apart from the person.
+  // ids_: all ids, for the report. others_: the ids of bodies seen apart from the person.
   std::set<std::uint64_t> ids_, others_;
   // Counts of frames with several bodies, of changes of the followed id, and of frames with other
   // bodies only.

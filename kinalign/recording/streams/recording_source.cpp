@@ -14,7 +14,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_names = 32;  // most streams or nodes that one message names
+constexpr std::size_t most_names = 32;  // limit on streams or nodes in one message
 
 /// The functions for the device's protocol. Fails if the protocol does not fit the selection.
 Result<DeviceProtocol> maker_of(const RawChannel& channel, const DeviceRequest& request) {

@@ -17,7 +17,7 @@ namespace {
 // A chosen limit. While a device reconnects, messages of both connections may arrive for a moment.
 constexpr Duration longest_reconnect = std::chrono::seconds(1);
 
-constexpr std::size_t most_named = 8;  // most senders that one message names
+constexpr std::size_t most_named = 8;  // limit on senders in one message
 
 /// The first few names as a list, because any program can add senders.
 std::string some_of(std::vector<std::string> names) {

@@ -36,7 +36,7 @@ struct StoredChunk {
 /// A message of an opened chunk. `data` is a view of the chunk's bytes.
 struct ChunkMessage {
   std::uint16_t channel = 0;
-  std::uint64_t log_time = 0;  // ns
+  std::uint64_t log_time = 0;  // ns, UTC
   std::string_view data;
 };
 
