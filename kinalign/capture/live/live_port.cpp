@@ -15,7 +15,7 @@ namespace kinalign {
 
 namespace {
 
-/// Sends small messages immediately: without this option the kernel waits for more data.
+/// Makes the kernel send small messages immediately. Otherwise it waits for more data.
 void send_at_once(int fd) {
   const int yes = 1;
   ::setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
@@ -40,7 +40,7 @@ void LivePort::accept() {
     if (socket.fd() < 0) return;
     if (clients_.size() == most_clients) {
       ++counts_.turned_away;
-      continue;  // the handle closes the connection
+      continue;  // the destructor of `socket` closes the connection
     }
     send_at_once(socket.fd());
     ++counts_.clients;
@@ -48,12 +48,11 @@ void LivePort::accept() {
   }
 }
 
-// A slow client loses whole messages, so that its stream stays valid.
+// Only whole messages are dropped for a slow client, so its stream stays valid.
 void LivePort::add(const McapSchema* schema, const McapChannel& channel,
                    const McapMessage& message) {
   for (Client& client : clients_) {
-    // The message is dropped for this client only. Its number is then missing in the client's
-    // stream.
+    // The message number is then missing in this client's stream.
     if (client.waiting.size() - client.sent + message.data.size() > most_waiting) {
       ++counts_.lost;
       ++client.lost;
@@ -70,7 +69,8 @@ void LivePort::add(const McapSchema* schema, const McapChannel& channel,
   }
 }
 
-/// A client never sends anything. One that does has mistaken this port for another.
+/// Returns whether the client has sent nothing. A client that sends data was meant for another
+/// port.
 bool LivePort::is_silent(const Client& client) {
   char byte = 0;
   const ssize_t got = ::recv(client.socket.fd(), &byte, 1, MSG_DONTWAIT);
@@ -94,13 +94,13 @@ bool LivePort::send(Client& client) {
   return true;
 }
 
-// Called once in each turn of the recording, so a client waits at most that long.
+// Each loop of the recording calls this, so a client waits at most one loop.
 void LivePort::turn() {
   accept();
   std::erase_if(clients_, [this](Client& client) { return !is_silent(client) || !send(client); });
 }
 
-// The end states how many messages the client lost.
+// The end record states how many messages were dropped for the client.
 void LivePort::end() {
   for (Client& client : clients_) {
     append_mcap(client.waiting, to_metadata(RecordingEnd{client.lost}));

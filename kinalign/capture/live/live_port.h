@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A TCP port for programs on this machine. It serves the recording while it is made, as an MCAP
-// stream without chunks: docs/formats/recording.md. A client that reads too slowly loses whole
-// messages, which shows in the message numbers. No call blocks.
+// A TCP port that sends the recording to programs on this machine while it is made. The stream is
+// MCAP without chunks (docs/formats/recording.md). If a client reads too slowly, whole messages are
+// dropped for that client. Gaps in the message numbers show the loss. No call blocks.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -18,16 +18,16 @@ namespace kinalign {
 /// Counts since the port was opened.
 struct LivePortCounts {
   std::uint64_t clients = 0;  // clients that were accepted
-  // connections refused or closed: too many clients, or the client sent data
+  // connections refused because of too many clients, or closed because the client sent data
   std::uint64_t turned_away = 0;
-  std::uint64_t lost = 0;  // messages that slow clients did not get, summed over the clients
+  std::uint64_t lost = 0;  // messages dropped for slow clients, summed over the clients
 };
 
 class LivePort {
  public:
   static constexpr std::size_t most_clients = 8;
-  /// Limit on the bytes waiting for one client, besides the kernel's buffer: half a minute of the
-  /// paper's devices.
+  /// Limit on the bytes that wait for one client, in addition to the kernel's buffer. The limit is
+  /// half a minute of data from a Kinect and a motion capture suit.
   static constexpr std::size_t most_waiting = std::size_t{4} << 20;
 
   /// Listens on 127.0.0.1. Port 0: any free port. Each stream begins with `header` and `head`.
@@ -35,27 +35,26 @@ class LivePort {
                                const std::vector<McapMetadata>& head);
 
   std::uint16_t port() const { return port_; }
-  /// Readable when a client connects.
+  /// Descriptor that becomes readable when a client connects.
   int fd() const { return listener_.fd(); }
   bool has_clients() const { return !clients_.empty(); }
 
-  /// Queues a message for all clients. A client gets schema and channel before the channel's first
-  /// message.
+  /// Queues a message for all clients. A client gets the schema and the channel before the first
+  /// message of that channel.
   void add(const McapSchema* schema, const McapChannel& channel, const McapMessage& message);
-  /// Accepts clients and sends waiting bytes as far as the clients accept them. Does not block.
+  /// Accepts new clients and sends waiting bytes to each client. Does not block.
   void turn();
-  /// Ends all streams properly. A client that does not accept its remaining bytes now does not get
-  /// them.
+  /// Writes the end of each stream. Bytes that a client does not accept now are dropped.
   void end();
 
   const LivePortCounts& counts() const { return counts_; }
 
  private:
-  /// A client that connects in the middle of a recording gets the head and then all messages from
-  /// that time on.
+  /// A client. If it connects during a recording, it gets the head and then all messages from that
+  /// time on.
   struct Client {
     Handle socket;
-    std::string waiting;   // whole records, except that a part of the first one may be sent already
+    std::string waiting;   // whole records; only the first may be partly sent
     std::size_t sent = 0;  // bytes of `waiting` that are sent
     std::set<std::uint16_t> channels{}, schemas{};  // ids already sent to this client
     std::uint64_t lost = 0;                         // messages not queued for this client

@@ -18,8 +18,8 @@ T read_as(const cmsghdr& control) {
   return value;
 }
 
-/// Reads the arrival stamp and the destination address from one control message. Other messages are
-/// ignored.
+/// Reads the arrival stamp or the destination address from one control message of the kernel. Other
+/// control messages are ignored.
 void read_control(const cmsghdr& control, Datagram& datagram) {
   if (const auto stamp = kernel_stamp(control)) {
     datagram.received = stamp;
@@ -36,8 +36,8 @@ void read_control(const cmsghdr& control, Datagram& datagram) {
   }
 }
 
-/// Writes the control message that sends from the address `asked.to`. Returns the bytes of
-/// `control` used.
+/// Writes the control message that makes `asked.to` the source address of an answer. Returns the
+/// number of bytes written to `control`.
 std::size_t put_source(const Datagram& asked, std::span<std::uint8_t> control) {
   const bool four = is_ipv4(asked.to);
   const std::size_t size = four ? sizeof(in_pktinfo) : sizeof(in6_pktinfo);
@@ -60,7 +60,7 @@ std::size_t put_source(const Datagram& asked, std::span<std::uint8_t> control) {
   return CMSG_SPACE(size);
 }
 
-/// The head of a message to `peer`.
+/// Returns a message header with the address `peer` and the data `out`.
 msghdr head_to(void* peer, socklen_t size, iovec& out) {
   msghdr head{};
   head.msg_name = peer;
@@ -79,7 +79,7 @@ bool send_back(int fd, const Datagram& asked, std::span<const std::uint8_t> byte
   // iovec needs a pointer to mutable bytes, but sendmsg(2) does not write to them.
   iovec out{const_cast<std::uint8_t*>(bytes.data()), bytes.size()};
   msghdr head = head_to(peer.data(), peer.size, out);
-  // Without a source address the system chooses one of this host's.
+  // If no source address is given, the system chooses one of this host's addresses.
   if (asked.unicast) {
     head.msg_control = control.data();
     head.msg_controllen = put_source(asked, control);
@@ -87,7 +87,7 @@ bool send_back(int fd, const Datagram& asked, std::span<const std::uint8_t> byte
   return ::sendmsg(fd, &head, MSG_DONTWAIT) == static_cast<ssize_t>(bytes.size());
 }
 
-// Each message points to the buffers of its slot; the slots never move.
+// Each message header points to the buffers of its slot. The slots never move.
 DatagramBatch::DatagramBatch(std::size_t bytes) : slots_(most), in_(most), out_(most) {
   unsent_.reserve(most);
   for (std::size_t i = 0; i < most; ++i) {
@@ -101,7 +101,7 @@ DatagramBatch::DatagramBatch(std::size_t bytes) : slots_(most), in_(most), out_(
 
 std::size_t DatagramBatch::receive(int fd) {
   queue_length_ = 0;
-  for (mmsghdr& message : in_) {  // recvmmsg(2) overwrites these lengths
+  for (mmsghdr& message : in_) {  // recvmmsg(2) changed these lengths in the previous call
     message.msg_hdr.msg_namelen = sizeof(sockaddr_storage);
     message.msg_hdr.msg_controllen = control_room;
   }
@@ -129,7 +129,7 @@ Datagram DatagramBatch::at(std::size_t i) const {
   return datagram;
 }
 
-// The answer goes to the sender's address in the slot, in the form in which the system gave it.
+// The answer goes to the sender's address that recvmmsg(2) wrote to the slot.
 void DatagramBatch::queue(std::size_t i, const Datagram& asked, std::size_t size) {
   Slot& slot = slots_[i];
   slot.out = {slot.answer.data(), size};
@@ -146,7 +146,7 @@ std::span<const std::size_t> DatagramBatch::send(int fd) {
     const auto left = static_cast<unsigned>(queue_length_ - at);
     const int sent = ::sendmmsg(fd, &out_[at], left, MSG_DONTWAIT);
     if (sent < 0 && errno == EINTR) continue;
-    // no route or a full buffer; continue with the next answer
+    // The system has no route or its buffer is full; the next answer may still be sent.
     if (sent < 0) unsent_.push_back(queued_[at]);
     at += sent < 0 ? 1 : static_cast<std::size_t>(sent);
   }

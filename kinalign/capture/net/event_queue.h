@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A queue of events with a fixed limit. Events beyond the limit are only counted.
+// A queue of at most 64 events. Further events are counted but not kept.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace kinalign {
 
-/// A caller that does not take its events must not make the program grow.
+/// The limit keeps memory bounded if the caller never takes the events.
 template <class Event>
 class EventQueue {
  public:
@@ -23,8 +23,9 @@ class EventQueue {
       ++missed_;
     }
   }
-  /// Events since the previous call.
+  /// Returns the events since the previous call.
   std::vector<Event> take() { return std::exchange(events_, {}); }
+  /// Number of events that were not kept, because the queue was full.
   std::uint64_t missed() const { return missed_; }
 
  private:

@@ -16,14 +16,14 @@ SenderClock sender_clock(const ClockStamp& stamp, NodeTime n, double drift) {
 }
 
 void FollowedClock::push(Exchange exchange, std::uint32_t epoch) {
-  // In a new epoch of the host's axis the same boot counts as another one, so no earlier bound is
-  // used.
+  // After a new epoch of the host's time axis, the device's boot gets a new number. Exchanges from
+  // before the epoch are then ignored.
   exchange.boot = boot_in_epoch(exchange.boot, epoch);
-  // Rounding may put an arrival microseconds before the previous one. The order of arrival is kept;
-  // a later arrival is still a correct bound.
+  // Rounding may put an arrival microseconds before the previous arrival. The stamp is then raised
+  // to the previous one. A stamp that is too late still gives a correct clock bound.
   newest_arrival_ = exchange.h_rx = std::max(newest_arrival_, exchange.h_rx);
   clock_->push(exchange);
-  (void)clock_->take_events();  // events are not displayed; align finds them again
+  (void)clock_->take_events();  // events are not displayed; align computes them again
   now_.reset();
   const auto stamp = clock_->host_from_node(exchange.boot, exchange.n_tx);
   if (!stamp) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clock of a device that sends pings, estimated during recording for display only. A take's
-// clock is fitted afterwards to all exchanges (clock/offline/device_clock.h).
+// The clock of a device that sends pings. The estimate made during recording is only displayed. The
+// clock of a take is fitted after the recording, to all exchanges (clock/offline/device_clock.h).
 #pragma once
 
 #include "kinalign/capture/net/sender_clock.h"
@@ -12,14 +12,15 @@
 
 namespace kinalign {
 
-/// Converts a clock stamp for display. `n` is the reading of the sender's clock at that stamp.
+/// Returns the clock at the stamp for display. `n` is the reading of the sender's clock at that
+/// stamp.
 SenderClock sender_clock(const ClockStamp& stamp, NodeTime n, double drift);
 
 class FollowedClock {
  public:
   /// Adds one exchange. `epoch` is the epoch of the host's time axis (HostAxis::epoch).
   void push(Exchange exchange, std::uint32_t epoch);
-  /// The clock at the newest exchange. Absent while there are too few exchanges for an estimate.
+  /// The clock at the newest exchange. Absent while there are too few exchanges.
   const std::optional<SenderClock>& now() const { return now_; }
 
  private:

@@ -12,7 +12,8 @@
 
 namespace kinalign {
 
-/// 16 bytes. An IPv4 address is stored as ::ffff:a.b.c.d (RFC 4291 section 2.5.5.2).
+/// 16 bytes of an IPv6 address. An IPv4 address a.b.c.d is stored as ::ffff:a.b.c.d (RFC 4291
+/// section 2.5.5.2).
 using HostAddress = std::array<std::uint8_t, 16>;
 
 constexpr HostAddress mapped_ipv4(std::span<const std::uint8_t, 4> bytes) {
@@ -37,8 +38,8 @@ struct NodeAddress {
   bool operator==(const NodeAddress&) const = default;
 };
 
-/// The part of an address by which an unknown sender is rate-limited. For IPv4 it is the whole
-/// address. For IPv6 it is the 64-bit network, because one customer usually has a whole /64.
+/// The part of an address that identifies an unknown sender for the rate limit. For IPv4 it is the
+/// whole address. For IPv6 it is the 64-bit network, because one customer usually has a whole /64.
 constexpr std::span<const std::uint8_t, 8> address_prefix(const HostAddress& address) {
   const std::span<const std::uint8_t, 16> bytes(address);
   return is_ipv4(address) ? bytes.last<8>() : bytes.first<8>();
@@ -47,7 +48,7 @@ constexpr std::span<const std::uint8_t, 8> address_prefix(const HostAddress& add
 /// All addresses whose first `bits` bits equal those of `prefix`.
 struct AddressBlock {
   HostAddress prefix{};
-  std::size_t bits = 0;  // prefix length in the 16 bytes; an IPv4 prefix length plus 96
+  std::size_t bits = 0;  // prefix length in the 16 bytes; for IPv4 its prefix length plus 96
 
   bool has(const HostAddress& address) const;
 };

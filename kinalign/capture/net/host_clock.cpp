@@ -14,7 +14,7 @@ namespace kinalign {
 
 namespace {
 
-// a bracket at most this wide is accepted without another reading
+// a bracket at most this wide is not read again
 constexpr Duration narrow = std::chrono::microseconds(2);
 constexpr Duration reading_noise = std::chrono::microseconds(1);
 constexpr Duration shortest_sleep = std::chrono::milliseconds(10);
@@ -29,7 +29,7 @@ Duration share(Duration of, double part) {
   return Duration{static_cast<std::int64_t>(static_cast<double>(of.count()) * part)};
 }
 
-/// The least and the greatest value of raw - utc.
+/// The least and the greatest possible value of the raw clock minus UTC.
 std::pair<Duration, Duration> offsets(const ClockBracket& b) {
   const Duration utc = b.utc.time_since_epoch();
   return {b.before.time_since_epoch() - utc, b.after.time_since_epoch() - utc};
@@ -43,20 +43,20 @@ Time SystemClocks::utc() { return Time{read_clock(CLOCK_REALTIME)}; }
 // CLOCK_BOOTTIME counts during a suspension, CLOCK_MONOTONIC does not.
 Duration SystemClocks::asleep() {
   Duration least = Duration::max();
-  for (int i = 0; i < 3; ++i) {  // an interruption between two readings looks like a suspension
+  for (int i = 0; i < 3; ++i) {  // an interruption between the two readings looks like a suspension
     const Duration running = read_clock(CLOCK_MONOTONIC);
     least = std::min(least, read_clock(CLOCK_BOOTTIME) - running);
   }
   return least;
 }
 
-// The kernel cancels a timer of this kind when the clock is set: reading it then gives ECANCELED,
-// once.
+// The kernel cancels a timer of this kind when the wall clock is set. The next read of the timer
+// then fails once with ECANCELED.
 bool SystemClocks::wall_was_set() {
   if (timer_.fd() < 0) {
     timer_ = Handle(::timerfd_create(CLOCK_REALTIME, TFD_NONBLOCK | TFD_CLOEXEC));
     itimerspec never{};
-    // if the clock reaches this time in 2038, the read below counts a tick
+    // if the clock reaches this time in 2038, the read below succeeds
     never.it_value.tv_sec = std::numeric_limits<std::int32_t>::max();
     ::timerfd_settime(timer_.fd(), TFD_TIMER_ABSTIME | TFD_TIMER_CANCEL_ON_SET, &never, nullptr);
   }
@@ -71,8 +71,8 @@ bool runs_on(const ClockBracket& earlier, const ClockBracket& later, double slew
   return least - slack <= greatest_then && least_then <= greatest + slack;
 }
 
-// The time since the stamp is counted back from the end of the bracket, shortened by the greatest
-// slew. So the result may be late, but never early.
+// The time from the stamp to the end of the bracket is reduced by the greatest slew. The result may
+// therefore be late, but never early.
 HostTime arrival(std::optional<Time> stamp, const ClockBracket& behind, Time steady) {
   if (!stamp || *stamp < steady || *stamp > behind.utc) return behind.after;
   const Duration since = behind.utc - *stamp;
@@ -85,7 +85,7 @@ HostAxis::HostAxis(ClockReader& reader) : reader_(reader), asleep_(reader.asleep
   steady_ = bracket_.utc;
 }
 
-// If the raw clock goes back, the axis stands still and is shifted from then on.
+// If the raw clock goes back, the axis repeats its last value and is shifted from then on.
 HostTime HostAxis::now() {
   const HostTime read = reader_.raw() + shift_;
   if (read < last_) {
@@ -98,7 +98,7 @@ HostTime HostAxis::now() {
   return read;
 }
 
-// An interruption makes a bracket wide, so up to three are read and the narrowest is kept.
+// An interruption makes a bracket wide, so the narrowest of up to three readings is kept.
 ClockBracket HostAxis::read() {
   ClockBracket best;
   for (int i = 0; i < 3; ++i) {
@@ -111,14 +111,14 @@ ClockBracket HostAxis::read() {
   return best;
 }
 
-/// A datagram may wait in the buffer. It may therefore be received several calls after a step of
-/// the wall clock.
+/// A datagram may wait in the buffer while the wall clock is stepped. Its stamp is then older than
+/// steady_.
 void HostAxis::look() {
   const ClockBracket before = std::exchange(bracket_, read());
-  // asked after the bracket was read, so that it covers the bracket
+  // called after the bracket was read, so that a step before the bracket is noticed
   const bool set = reader_.wall_was_set();
   was_set_ = was_set_ || set;
-  // Stamps from before this moment can't be converted any more.
+  // A stamp from before this step can't be converted to host time.
   if (set || !runs_on(before, bracket_, most_slew)) steady_ = bracket_.utc;
 }
 

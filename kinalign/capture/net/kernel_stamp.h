@@ -12,7 +12,7 @@
 
 namespace kinalign {
 
-/// The stamp on CLOCK_REALTIME. Absent if `control` is not a timestamp.
+/// The stamp on CLOCK_REALTIME. Absent if `control` contains no stamp.
 inline std::optional<Time> kernel_stamp(const cmsghdr& control) {
   if (control.cmsg_level != SOL_SOCKET || control.cmsg_type != SCM_TIMESTAMPNS) return std::nullopt;
   timespec stamp{};

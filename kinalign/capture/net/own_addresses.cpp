@@ -16,7 +16,7 @@ namespace kinalign {
 
 namespace {
 
-// Link-local addresses need the name of an interface, which another machine does not know.
+// A link-local address works only with the name of an interface of the other machine.
 bool reaches_others(const ifaddrs& one) {
   if (one.ifa_addr == nullptr || (one.ifa_flags & IFF_UP) == 0) return false;
   if ((one.ifa_flags & IFF_LOOPBACK) != 0) return false;

@@ -10,8 +10,8 @@
 
 namespace kinalign {
 
-/// Example: "mocap: expected a UDP port to serve on at 0.0.0.0:7012, found a port that another
-/// program uses". The device's name replaces the address and port at the beginning.
+/// Returns the error with the device's name in place of the address and port. Example: "mocap:
+/// expected a UDP port to serve on at 0.0.0.0:7012, found a port that another program uses".
 template <class T>
 Result<T> with_name(const std::string& name, Result<T> opened) {
   return std::move(opened).map_error([&name](Error error) {

@@ -5,8 +5,8 @@
 
 namespace kinalign {
 
-/// Returns the entry of the address. If it has none, the entry with the fullest bucket is replaced,
-/// because forgetting that one gives the fewest extra answers.
+/// Returns the entry of the address. If there is none, the entry with the fullest bucket is
+/// replaced, because losing that entry allows the fewest additional answers.
 RateLimit::Entry& RateLimit::entry_of(Set& set, std::uint64_t hash) {
   const auto own = std::find_if(set.entries.begin(), set.entries.end(),
                                 [hash](const Entry& entry) { return entry.hash == hash; });
@@ -19,7 +19,7 @@ RateLimit::Entry& RateLimit::entry_of(Set& set, std::uint64_t hash) {
 }
 
 RateLimit::Verdict RateLimit::ask(std::uint64_t hash, HostTime now) {
-  // A bucket is one number: the time at which it is full again. One answer moves it by `interval`.
+  // The bucket is stored as the time at which it is full again. Each answer adds `interval`.
   Entry& entry = entry_of(sets_[hash % sets_.size()], hash);
   const HostTime full_at = std::max(entry.full_at, now) + interval;
   if (full_at - now <= burst * interval) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Limits how often an unknown sender is answered. The table has a fixed size. Time is an argument.
+// Limits how often an unknown sender gets an answer. The table has a fixed size. The caller passes
+// the time.
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -11,8 +12,9 @@
 
 namespace kinalign {
 
-/// A token bucket of 8 answers for each address, refilled by one every 2 s. This is enough for the
-/// bursts of clients: chrony's iburst sends 4 to 8 requests, ntpdig's -p 4 sends four at once.
+/// Each address may get 8 answers at once, and one more every 2 s (a token bucket). This suffices
+/// for the bursts of clients: chrony's iburst sends 4 to 8 requests, ntpdig's -p 4 sends four at
+/// once.
 class RateLimit {
  public:
   static constexpr std::int64_t burst = 8;
@@ -20,20 +22,20 @@ class RateLimit {
   static constexpr std::size_t ways = 4, entries = 65'536;
   static constexpr std::uint64_t drops_per_kiss = 16;
 
-  /// `kiss`: refused, but answered with the advice to ask less often. One of 16 refusals gets it.
+  /// `kiss`: no answer, but the advice to ask less often. One of 16 refused requests gets it.
   enum class Verdict : std::uint8_t { answer, drop, kiss };
 
   RateLimit() : sets_(entries / ways) {}
 
-  /// Counts one more request. `hash` is a keyed hash of the address. The key is secret, so that
-  /// nobody can choose addresses that evict another address's entry.
+  /// Counts one more request of an address. `hash` is a hash of the address with a secret key.
+  /// Without the key, no one can choose addresses that replace another address's entry.
   Verdict ask(std::uint64_t hash, HostTime now);
 
  private:
-  /// An entry that was never used is a full bucket, so the table needs no flags.
+  /// A new entry is a full bucket, so the table needs no flag for unused entries.
   struct Entry {
     std::uint64_t hash = 0;
-    // the time when the bucket is full again; it is full if that is past
+    // the time when the bucket is full again; in the past: it is full
     HostTime full_at{HostTime::min()};
   };
   struct alignas(64) Set {  // one cache line

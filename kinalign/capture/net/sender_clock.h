@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clock of a sender that sends pings, for display.
+// The clock of a device that sends pings, for display.
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -10,7 +10,7 @@ namespace kinalign {
 
 struct SenderClock {
   Duration host_minus_sender{};
-  std::optional<Duration> half_interval;  // absent: the interval is not certified (yet)
+  std::optional<Duration> half_interval;  // absent: the interval is not certified
   double drift = 0.0;  // estimated rate of the host's clock against the sender's, minus 1
 };
 

@@ -13,8 +13,8 @@ std::optional<std::size_t> Senders::number(const HostAddress& host, std::uint16_
   return number;
 }
 
-/// The number may have been given to another sender during a silence. The connection then gets a
-/// new one.
+/// While the connection was silent, its number may have been given to another sender. The
+/// connection then gets a new number.
 std::optional<std::size_t> Senders::number(std::optional<Known>& known, const HostAddress& host,
                                            std::uint16_t port, HostTime now) {
   if (known && senders_[known->number].serial != known->serial) known.reset();
@@ -32,11 +32,12 @@ void Senders::note_arrival(std::size_t number, HostTime now) {
   ++senders_[number].times;
 }
 
-// The limit on serial numbers keeps the number of channels limited.
+// Each serial number needs a channel, so their number is limited.
 std::optional<std::size_t> Senders::add(const HostAddress& host, std::uint16_t port, HostTime now) {
   if (serials_ >= most_serials) {
     if (const auto past = own_past(host)) {
-      // The host's oldest sender continues under a new port, with its number and its channel.
+      // The sender of this host that was silent longest continues with the new port. It keeps its
+      // number and its channel.
       senders_[*past].port = port;
       return past;
     }
@@ -48,11 +49,12 @@ std::optional<std::size_t> Senders::add(const HostAddress& host, std::uint16_t p
   return number;
 }
 
-/// Returns a free number, or the number of the sender that was silent longest. After one minute of
-/// silence a number may be reused. Two seconds suffice if the sender sent few messages, since it
-/// may be unrelated, or if it has the newcomer's host address, since it is probably the newcomer
-/// itself. A host with at least half of all numbers may replace its own short-lived senders at
-/// once. So a host that uses a new port for each message crowds out only itself.
+/// Returns a free number, or the number of the sender that was silent longest. A number may be
+/// reused after one minute of silence. Two seconds suffice in two cases: the sender sent few
+/// messages, so it may be unrelated, or it has the host address of the new sender, so it is
+/// probably the same device. If one host has at least half of all numbers, its senders of few
+/// messages are replaced at once. A host that uses a new port for each message therefore displaces
+/// only its own senders.
 std::optional<std::size_t> Senders::place_for(const HostAddress& host, HostTime now) {
   if (senders_.size() < most) {
     senders_.emplace_back();
@@ -74,7 +76,7 @@ std::optional<std::size_t> Senders::place_for(const HostAddress& host, HostTime 
   return found;
 }
 
-/// The sender of that host that was silent longest.
+/// Finds the sender of that host that was silent longest.
 std::optional<std::size_t> Senders::own_past(const HostAddress& host) const {
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < senders_.size(); ++i) {

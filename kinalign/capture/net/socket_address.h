@@ -18,7 +18,8 @@ namespace kinalign {
 
 using FoundAddress = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
 
-/// Converts a numeric address. `type`: SOCK_DGRAM or SOCK_STREAM. nullptr: not a numeric address.
+/// Converts a numeric address. `type` is SOCK_DGRAM or SOCK_STREAM. Returns nullptr if the text is
+/// not a numeric address.
 FoundAddress find_address(const std::string& address, std::uint16_t port, int type);
 
 /// An address and port in the system's form.
@@ -28,10 +29,10 @@ struct SystemAddress {
 
   sockaddr* data() { return reinterpret_cast<sockaddr*>(&bytes); }
 };
-/// `scope`: the interface of a link-local address, else 0.
+/// `scope`: the interface number of a link-local address, else 0.
 SystemAddress system_address(const HostAddress& host, std::uint16_t port, std::uint32_t scope = 0);
 
-/// The system's addresses and ours have the same bytes in the same order.
+/// The system's addresses and HostAddress contain the same bytes in the same order.
 inline HostAddress host_of(const in6_addr& address) { return std::bit_cast<HostAddress>(address); }
 inline HostAddress host_of(const in_addr& address) {
   return mapped_ipv4(std::bit_cast<std::array<std::uint8_t, 4>>(address));
@@ -39,15 +40,15 @@ inline HostAddress host_of(const in_addr& address) {
 /// The address and port of one end of a connection, or of a datagram's sender.
 NodeAddress address_of(const sockaddr_storage& address);
 
-/// The port that a socket is bound to.
+/// Returns the port to which a socket is bound.
 std::uint16_t bound_port(int fd);
 
-/// A non-blocking socket that accepts TCP connections. The kernel stamps their data. Port 0: any
-/// free port.
+/// Opens a non-blocking socket that accepts TCP connections. The kernel stamps the received data.
+/// Port 0: any free port.
 Result<Handle> listen_tcp(const std::string& address, std::uint16_t port, std::size_t waiting);
 
-/// Makes the kernel stamp received data. For a listener the option applies to its connections, from
-/// their first byte.
+/// Makes the kernel stamp received data. If `fd` is a listener, the option applies to all its
+/// connections, from their first byte.
 void ask_for_stamps(int fd);
 
 }  // namespace kinalign

@@ -16,14 +16,15 @@ namespace kinalign {
 
 namespace {
 
-// Bytes of one read. A read has one stamp, that of its last bytes. A smaller read therefore gives
-// more accurate stamps to data that waited while the machine was stopped. Frames have 1 to 4 KB.
-// The kernel merges waiting packets and their stamps (over loopback 16 frames of 1480 bytes).
+// Greatest number of bytes in one read. A read has one stamp, the arrival of its last bytes. If the
+// machine was stopped, waiting data therefore gets more accurate stamps from smaller reads. Frames
+// have 1 to 4 KB. The kernel merges waiting packets and their stamps (over loopback 16 frames of
+// 1480 bytes).
 constexpr std::size_t read_size = std::size_t{4} << 10;
-constexpr int reads_in_turn = 64;  // reads of one connection before other ports have their turn
+constexpr int reads_in_turn = 64;  // reads of one connection before other ports are read
 constexpr std::size_t most_links = 8;
 constexpr Duration between_tries = std::chrono::seconds(1);
-// a choice; every device sends many messages a second
+// chosen, not measured; every device sends many messages a second
 constexpr Duration idle_after = std::chrono::seconds(3);
 
 /// Detects within half a minute that a device has vanished without closing the connection.
@@ -38,16 +39,16 @@ void keep_alive(int fd) {
 }
 
 /// Limits an attempt to connect to about three seconds (two requests, timeouts of 1 and 2 s;
-/// measured 3.1 s), so that a new attempt is made soon. The system's own retries come after 32 and
-/// 64 s. A device that was switched on in between would be connected that late.
+/// measured 3.1 s). The system itself repeats the request after up to 64 s. A device that is
+/// switched on during such a wait would be connected that late.
 void ask_briefly(int fd) {
   const int once_more = 1;
   ::setsockopt(fd, IPPROTO_TCP, TCP_SYNCNT, &once_more, sizeof once_more);
 }
 
 /// Calls recv(2) and also returns the arrival of the last byte. After a lost segment, earlier bytes
-/// may have arrived later than the last one. They were sent earlier, and clock bounds depend only
-/// on that.
+/// may have arrived later than the last byte. Clock bounds stay correct, because the earlier bytes
+/// were sent before the last byte.
 ssize_t receive_stamped(int fd, std::span<char> room, std::optional<Time>& stamp) {
   alignas(cmsghdr) std::array<std::uint8_t, 128> control{};
   iovec in{room.data(), room.size()};
@@ -96,15 +97,15 @@ void TcpPieces::accept(HostTime now) {
     if (socket.fd() < 0) return;
     if (links_.size() == most_links && !give_up_idle(now)) {
       ++counts_.refused;
-      continue;  // the handle closes the refused connection
+      continue;  // the destructor of `socket` closes the refused connection
     }
     keep_alive(socket.fd());
     links_.push_back({std::move(socket), now});
   }
 }
 
-/// A device that vanished without closing its connection must not keep out a device that returns.
-/// The connection that was silent longest is closed. Returns false if no connection was silent long
+/// A device that vanished without closing its connection must not prevent the next connection. The
+/// connection that was silent longest is closed. Returns false if no connection was silent long
 /// enough.
 bool TcpPieces::give_up_idle(HostTime now) {
   const auto idlest = std::min_element(
@@ -132,7 +133,7 @@ void TcpPieces::try_to_connect(HostTime now) {
   links_.push_back({std::move(socket), now});
 }
 
-// A listening port may have several connections; a connecting one has at most one.
+// A listening port may have several connections. A port that connects has at most one.
 void TcpPieces::drain(HostAxis& axis, const TakePiece& take) {
   if (listener_.fd() >= 0) {
     accept(axis.now());
@@ -145,19 +146,19 @@ void TcpPieces::drain(HostAxis& axis, const TakePiece& take) {
 void TcpPieces::send(std::size_t sender, std::span<const std::uint8_t> bytes) {
   for (const Link& link : links_) {
     if (!link.sender || link.sender->number != sender) continue;
-    // The number belongs to another sender now, so the bytes are not for this connection.
+    // The number belongs to another sender by now, so these bytes are not for this connection.
     if (link.sender->serial != senders_.at(sender).serial) continue;
     const ssize_t sent =
         ::send(link.socket.fd(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
     if (sent == static_cast<ssize_t>(bytes.size())) return;
     ++counts_.unsent;
-    // The rest cannot be sent later: the next message would then begin inside this one.
+    // The rest can't be sent later, because the next message would begin inside this message.
     if (sent > 0) ::shutdown(link.socket.fd(), SHUT_RDWR);
     return;
   }
 }
 
-/// Checks whether a pending connection was made. Returns false if it failed.
+/// Checks whether the pending connection was established. Returns false if it failed.
 bool TcpPieces::settle(Link& link) {
   int fault = 0;
   socklen_t size = sizeof fault;
@@ -179,7 +180,7 @@ bool TcpPieces::drain_link(Link& link, HostAxis& axis, const TakePiece& take) {
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return errno == EAGAIN || errno == EWOULDBLOCK;
     if (got == 0) return false;
-    // Each read has its own bracket, because reading a whole turn may take long.
+    // The bracket is read for each stamp, because reading up to 64 times may take long.
     axis.look();
     const HostTime arrival = link.last_arrival = axis.arrival(stamp);
     const auto sender = senders_.number(link.sender, link.address.host, link.address.port, arrival);

@@ -8,7 +8,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr int batches_in_turn = 4;  // batches of one socket before other ports have their turn
+constexpr int batches_in_turn = 4;  // batches of one socket before other ports are read
 
 }  // namespace
 
@@ -38,7 +38,7 @@ void UdpPieces::drain(HostAxis& axis, const TakePiece& take) {
   }
 }
 
-// A cut datagram is passed on as far as it was received; `any_room` makes this rare.
+// A truncated datagram is passed on without its end. With buffers of `any_room` bytes this is rare.
 void UdpPieces::take_datagram(const Datagram& datagram, const HostAxis& axis,
                               const TakePiece& take) {
   const HostTime arrival = axis.arrival(datagram.received);
@@ -53,7 +53,7 @@ void UdpPieces::take_datagram(const Datagram& datagram, const HostAxis& axis,
 
 void UdpPieces::send(std::size_t sender, std::span<const std::uint8_t> bytes) {
   const Datagram& asked = senders_.at(sender).asked;
-  // One socket for each family: the answer must leave from one of the sender's family.
+  // Each socket serves one address family. The answer needs the socket of the sender's family.
   const auto socket = std::find_if(sockets_.begin(), sockets_.end(), [&](const UdpSocket& one) {
     return is_ipv6_text(one.address()) != is_ipv4(asked.from);
   });

@@ -16,13 +16,14 @@ namespace kinalign {
 
 namespace {
 
-constexpr int receive_buffer = 4 << 20;  // bytes; about a tenth of a second of a flood
+constexpr int receive_buffer = 4 << 20;  // bytes; holds about 0.1 s of a flood of datagrams
 
 bool set(int fd, int level, int name, int value) {
   return ::setsockopt(fd, level, name, &value, sizeof value) == 0;
 }
 
-// IPV6_V6ONLY keeps IPv4 off the IPv6 socket, since IPv4 has a socket of its own on the same port.
+// IPV6_V6ONLY keeps IPv4 datagrams off the IPv6 socket. Another socket on the same port receives
+// IPv4.
 bool set_options(int fd, int family) {
   if (!set(fd, SOL_SOCKET, SO_RCVBUFFORCE, receive_buffer)) {  // needs CAP_NET_ADMIN
     set(fd, SOL_SOCKET, SO_RCVBUF, receive_buffer);            // limited by net.core.rmem_max
@@ -101,7 +102,7 @@ Result<UdpSocket> UdpSocket::connected(const HostAddress& own, std::uint16_t por
       no_port(endpoint_text(to_string(peer), peer_port), "a UDP socket of its own", errno, port));
 }
 
-// Any other error, such as too many open files, says nothing about IPv6.
+// Other errors, such as too many open files, don't show whether the system has IPv6.
 bool system_knows_ipv6() {
   return Handle(::socket(AF_INET6, SOCK_DGRAM | SOCK_CLOEXEC, 0)).fd() >= 0 ||
          errno != EAFNOSUPPORT;
@@ -115,13 +116,13 @@ Result<std::vector<UdpSocket>> open_udp_sockets(const std::vector<std::string>& 
   std::vector<UdpSocket> sockets;
   for (const std::string& address : all) {
     sockets.push_back(KA_TRY(UdpSocket::open(address, port)));
-    // With port 0 the first socket gets a free port, and the others use the same one.
+    // If the port is 0, the first socket gets a free port, and the other sockets use the same port.
     port = sockets.front().port();
   }
   return sockets;
 }
 
-// The kernel counts since the socket was opened.
+// The kernel counts from the opening of the socket.
 std::uint64_t dropped_by_kernel(const UdpSocket& socket) {
   std::array<std::uint32_t, SK_MEMINFO_VARS> found{};
   socklen_t size = sizeof found;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bound, non-blocking UDP socket of a server. For each datagram the kernel supplies a stamp of
-// its arrival (CLOCK_REALTIME) and its destination address.
+// A bound, non-blocking UDP socket of a server. The kernel gives each datagram a stamp of its
+// arrival (CLOCK_REALTIME) and its destination address.
 #pragma once
 
 #include "kinalign/capture/net/host_address.h"
@@ -16,10 +16,10 @@ struct sockaddr;  // <sys/socket.h>
 
 namespace kinalign {
 
-/// The error for a port that could not be opened: a text and an ErrorKind for the cause. `at`: the
+/// Returns the error for a port that could not be opened: a text and the ErrorKind. `at`: the
 /// address and port. `code`: errno.
 Error no_port(std::string at, std::string expected, int code, std::uint16_t port);
-/// The error for a text that is no numeric address.
+/// Returns the error for a text that is not a numeric address.
 Error no_address(const std::string& text);
 
 class UdpSocket {
@@ -27,13 +27,13 @@ class UdpSocket {
   /// `address`: IPv4 or IPv6, with %interface if it is link-local. "0.0.0.0" and "::" listen on all
   /// addresses of their family. Port 0: any free port.
   static Result<UdpSocket> open(const std::string& address, std::uint16_t port);
-  /// Opens a socket for the datagrams from `peer` to `own` alone. An open socket of the same port
-  /// must have called share_port.
+  /// Opens a socket that receives only the datagrams from `peer` to `own`. If another socket is
+  /// bound to the port, share_port must have been called for that socket.
   static Result<UdpSocket> connected(const HostAddress& own, std::uint16_t port,
                                      const HostAddress& peer, std::uint16_t peer_port);
-  /// Allows more sockets of the same user on this port. They must share the port too. `open` does
-  /// not share it, so a second server is still refused. Call it only after this socket is bound, so
-  /// that this socket is refused if a server is running.
+  /// Lets other sockets of the same user bind this port, if they allow sharing too. `open` does not
+  /// allow sharing, so a second server on the port is refused. Call share_port only after this
+  /// socket is bound: binding then fails if another server uses the port.
   bool share_port() const;
 
   int fd() const { return handle_.fd(); }
@@ -52,8 +52,9 @@ class UdpSocket {
 /// Datagrams that the kernel dropped, because of a filter or because the buffer was full.
 std::uint64_t dropped_by_kernel(const UdpSocket& socket);
 
-/// The system's spelling of an address that `open` accepts: "0.0.0.0" for "0". Absent if the text
-/// is not an address. Names are not accepted, since a name may have several addresses.
+/// Returns the system's spelling of an address that `open` accepts: "0.0.0.0" for "0". Absent if
+/// the text is not an address. Host names are not accepted, since a name may have several
+/// addresses.
 std::optional<std::string> spelt_address(const std::string& text);
 std::string address_text(const sockaddr& address);
 
@@ -67,8 +68,8 @@ inline bool is_ipv6_text(std::string_view address) {
 
 bool system_knows_ipv6();
 
-/// Opens one socket for each address, all on the same port. Without addresses it opens one for all
-/// of IPv4 and, if the host has IPv6, one for all of IPv6.
+/// Opens one socket for each address, all on the same port. Without addresses it opens one socket
+/// for all IPv4 addresses and, if the host has IPv6, one for all IPv6 addresses.
 Result<std::vector<UdpSocket>> open_udp_sockets(const std::vector<std::string>& addresses,
                                                 std::uint16_t port);
 

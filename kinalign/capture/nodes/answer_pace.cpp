@@ -5,13 +5,13 @@
 
 namespace kinalign {
 
-// The stride is chosen once a second from the rate of the second before.
+// Once a second, the stride is computed from the rate of the previous second.
 bool AnswerPace::ask(HostTime now) {
   constexpr Duration second = std::chrono::seconds(1);
   if (begin_ == HostTime::min() || now < begin_) begin_ = now;
   if (now - begin_ >= second) {
     rate_hz_ = static_cast<double>(frames_) / seconds(now - begin_);
-    // rounding allowance: a second that begins early may contain one more frame
+    // allows for a second that contains one frame more because of timing jitter
     stride_ = static_cast<std::int64_t>(std::ceil((*rate_hz_ - 1.5) / most_per_s));
     if (stride_ < 1) stride_ = 1;
     begin_ = now;

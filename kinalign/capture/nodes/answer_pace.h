@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses which frames of a node are answered. Up to 30 frames per second, all are answered; at
-// higher rates every second, third, ... frame is. More exchanges do not improve the clock estimate
-// (docs/clock.md), and each takes radio time.
+// Decides which frames of a node get an answer. Up to 30 frames per second, every frame is
+// answered; at higher rates every second or third frame, and so on. More exchanges would not
+// improve the clock estimate (docs/clock.md), and each exchange takes radio time.
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -11,14 +11,14 @@
 
 namespace kinalign {
 
-/// One for each session. It counts seconds from the first frame.
+/// The pace of one session. It counts seconds from the first frame.
 class AnswerPace {
  public:
   static constexpr std::int64_t most_per_s = 30;
 
-  /// Counts one received frame. Returns whether to answer it.
+  /// Counts one received frame. Returns whether this frame is answered.
   bool ask(HostTime now);
-  /// Frames per second in the last complete second. Absent before the first one.
+  /// Frames per second in the last complete second. Absent during the first second.
   std::optional<double> rate_hz() const { return rate_hz_; }
 
  private:

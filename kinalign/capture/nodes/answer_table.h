@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The last 256 answers sent to one node. An echo or a confirm counts only if it names one of these
-// answers and its nonce. The times are taken from this table, not from the copies that the node
+// The last 256 answers sent to one node. An echo or a confirm is valid only if it names one of
+// these answers and its nonce. The times come from this table, not from the copies that the node
 // sends.
 #pragma once
 
@@ -21,11 +21,11 @@ struct GivenAnswer {
   std::uint32_t nonce = 0;
   HostTime t2{}, t3{};      // arrival of the answered datagram, departure of the answer
   std::uint64_t frame = 0;  // the unwrapped number of the answered datagram
-  // `given`: the entry is in use. `used`: the node has named the answer.
+  // `given`: the entry is in use. `used`: the node has already named this answer.
   bool given = false, used = false;
 };
 
-/// A ring: an answer takes the place of the one 256 numbers before it.
+/// A ring buffer: an answer replaces the answer whose number is lower by 256.
 class AnswerTable {
  public:
   static constexpr std::size_t remembered = 256;
@@ -35,22 +35,22 @@ class AnswerTable {
     place = answer;
     place.given = true;
   }
-  /// Looks up the answer that an echo or a confirm names. `answer` is set if it is known: taken or
-  /// repeated.
+  /// Looks up the answer that an echo or a confirm names. `answer` is set if the verdict is taken
+  /// or repeated.
   EchoVerdict find(std::uint32_t sequence, std::uint32_t nonce, GivenAnswer& answer) {
     GivenAnswer& place = answers_[sequence % remembered];
     if (!place.given) return EchoVerdict::unknown;
-    // A later answer has taken the place.
+    // A later answer has replaced this answer.
     if (steps_between(sequence, place.sequence, 32) > 0) return EchoVerdict::stale;
     if (place.sequence != sequence || place.nonce != nonce) return EchoVerdict::unknown;
     answer = place;
-    // One exchange gives one bound, however often it is echoed.
+    // One exchange gives one clock bound, even if the node echoes the answer several times.
     return std::exchange(place.used, true) ? EchoVerdict::repeated : EchoVerdict::taken;
   }
 
  private:
-  // Indexed by sequence modulo `remembered`. Stored outside the object, so that a search through
-  // all sessions stays in the cache.
+  // Indexed by sequence modulo `remembered`. The vector keeps this object small, so that a search
+  // through all sessions stays in the processor's cache.
   std::vector<GivenAnswer> answers_ = std::vector<GivenAnswer>(remembered);
 };
 

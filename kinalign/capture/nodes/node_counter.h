@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A node's counter in us, as 64 bits. A node may send only the low 32 bits. Such a reading is
-// unwrapped to the value nearest to the value predicted from the host's clock.
+// A node's counter in us, extended to 64 bits. A node may send only the low 32 bits. Such a reading
+// is extended ("unwrapped") to the value nearest to the prediction from the host's clock.
 #pragma once
 
 #include "kinalign/wire/counter.h"
@@ -11,11 +11,11 @@
 
 namespace kinalign {
 
-/// The prediction continues from the newest reading with the host's clock. A crystal's error is
-/// small against a turn of 71 minutes.
+/// The prediction is the newest reading plus the time since then on the host's clock. The error of
+/// the node's crystal is small compared with the 71 minutes after which 32 bits wrap.
 class NodeCounter {
  public:
-  /// Unwraps a reading that arrived at h_rx, us. Does not change the state.
+  /// Unwraps a reading in us that arrived at h_rx. Does not change the state.
   std::int64_t unwrap(std::uint64_t counter_us, HostTime h_rx) const {
     const auto read = static_cast<std::int64_t>(counter_us);
     if (!begun_ || read >= turn_us) return read;
@@ -28,14 +28,14 @@ class NodeCounter {
     return read >= turn_us || n_tx_us < turn_us ? read : unwrapped(counter_us, 32, n_tx_us);
   }
 
-  /// n minus the predicted counter, us. Positive: the counter is ahead. 0 before the first reading.
+  /// n minus the predicted reading, us. Positive: n is ahead. 0 before the first reading.
   std::int64_t ahead_us(std::int64_t n_us, HostTime h_rx) const {
     return begun_ ? n_us - predicted_us(h_rx) : 0;
   }
-  /// The newest reading minus n, us. Negative: n is newer.
+  /// The newest reading minus n, us. Negative: n is newer than the newest reading.
   std::int64_t behind_us(std::int64_t n_us) const { return begun_ ? newest_us_ - n_us : 0; }
 
-  /// Stores an unwrapped reading if it is the newest: late frames must not move the prediction
+  /// Stores an unwrapped reading if it is the newest. Late frames must not move the prediction
   /// back.
   void take(std::int64_t n_us, HostTime h_rx) {
     if (begun_ && n_us <= newest_us_) return;
@@ -45,10 +45,10 @@ class NodeCounter {
   }
 
  private:
-  static constexpr std::int64_t turn_us = std::int64_t{1} << 32;  // of a 32-bit counter: 71.6 min
-  /// Limit on the difference between an unwrapped reading and the prediction, us. It covers delays
-  /// and, after a day of silence, a crystal that is 100 ppm off. Beyond it the reading is taken as
-  /// 64 bits.
+  static constexpr std::int64_t turn_us = std::int64_t{1} << 32;  // 32 bits wrap after 71.6 min
+  /// Limit on the difference between an unwrapped reading and the prediction, us. It allows for
+  /// delays and, after a day of silence, for a crystal that is 100 ppm off. If the difference is
+  /// greater, the reading is a 64-bit value.
   static constexpr std::int64_t trusted_us = 20'000'000;
 
   std::int64_t predicted_us(HostTime h_rx) const {

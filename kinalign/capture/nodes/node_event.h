@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Events of the nodes, for display and logs.
+// Events about nodes, for display and logs.
 #pragma once
 
 #include "kinalign/capture/net/host_address.h"
@@ -13,20 +13,20 @@
 
 namespace kinalign {
 
-/// Members that a kind does not mention keep their defaults.
+/// Members that the comment of a kind does not mention keep their defaults.
 struct NodeEvent {
   enum class Kind : std::uint8_t {
     joined,         // a new stream begins
-    started,        // the stream's node has started again, with a new boot id
-    restarted,      // warning: counter and sequence began again under the same boot id
-    twins,          // warning: two nodes have this id; each has its own stream now
+    started,        // the node of the stream has started again, with a new boot id
+    restarted,      // warning: counter and sequence number began again under the same boot id
+    twins,          // warning: two nodes have this id; each now has its own stream
     renamed,        // the node was known as `other_id` before
     moved,          // the node's frames come from another address
     left,           // the node was silent for ten seconds
     returned,       // the node sends again after `left`, without a restart
     newer_version,  // a datagram has a later protocol version: `version`
     too_many,       // warning: a node was not admitted, because the table is full
-    wrong_key       // warning: refused for its key, see `refusal`; the node id is only a claim
+    wrong_key       // warning: refused because of its key, see `refusal`; the node id is not proved
   };
   Kind kind{};
   std::size_t stream = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A classic BPF program (the kernel's Documentation/networking/filter.rst). The filter of a UDP
-// socket sees the UDP header's 8 bytes in front of the datagram.
+// The filter is a classic BPF program (the kernel's Documentation/networking/filter.rst). For a UDP
+// socket, the program sees the 8 bytes of the UDP header before the datagram.
 #include "kinalign/capture/nodes/node_filter.h"
 
 #include "kinalign/wire/node_datagram.h"
@@ -16,7 +16,7 @@ namespace kinalign {
 
 namespace {
 
-// Bytes of the UDP header, and of the shortest datagram of a node.
+// Bytes of the UDP header, and of a node's shortest datagram.
 constexpr std::uint32_t header = 8;
 constexpr std::uint32_t least = node_datagram_size(0, false);
 
@@ -29,9 +29,9 @@ constexpr sock_filter step(int code, std::uint32_t k, int if_true = 0, int if_fa
 }  // namespace
 
 bool attach_node_filter(const UdpSocket& socket) {
-  // All protocol versions pass, since unknown versions are counted.
-  // Length within the limits, length field equal to the length, magic: accept. Everything else is
-  // dropped.
+  // The filter accepts a datagram if its length is within the limits, its length field equals the
+  // length, and it begins with the magic number. Datagrams of all protocol versions pass, because
+  // unknown versions are counted.
   std::array program{
       step(BPF_LD | BPF_W | BPF_LEN, 0),
       step(BPF_JMP | BPF_JGE | BPF_K, header + least, 0, 8),

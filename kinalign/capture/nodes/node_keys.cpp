@@ -33,8 +33,8 @@ std::string octal(unsigned mode) {
   return text;
 }
 
-/// Checks that only the owner may read the file.
-/// The open file is checked, not the path, so nobody can exchange it in between.
+/// Checks that only the owner may read the file. The open file is checked, not its path, so the
+/// file can't be exchanged between check and read.
 Result<void> check_mode(int fd, const std::string& path) {
   struct stat found {};
   if (::fstat(fd, &found) != 0) return no_key(path, "a key file", std::strerror(errno));
@@ -44,8 +44,8 @@ Result<void> check_mode(int fd, const std::string& path) {
                 ErrorKind::exposed_key);
 }
 
-/// The message for a file that may not be read. It names the file's owner and mode if they are
-/// known.
+/// The message for a file that this user may not read. It names the file's owner and mode if they
+/// are known.
 std::string forbidden(const std::string& path) {
   std::string text = "no permission to read this file";
   struct stat found {};
@@ -80,7 +80,7 @@ Result<Key> drawn() {
 
 }  // namespace
 
-// Each node gets only its own key, so a lost node reveals no key of another one.
+// Each node gets only its own key, so a lost node does not reveal the key of another node.
 MacKey node_key(const LabKey& lab, std::uint32_t node_id) {
   const std::string name = "kinalign node key " + std::to_string(node_id);
   std::array<std::uint8_t, 32> whole{};
@@ -105,12 +105,12 @@ std::string key_text(std::span<const std::uint8_t> key) {
   return text;
 }
 
-// O_NONBLOCK keeps the open from waiting if the path is a pipe.
+// If the path is a pipe, O_NONBLOCK prevents open from waiting.
 Result<LabKey> read_lab_key(FileSystem& files, const std::string& path) {
   const OpenFile file(files, files.open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK, 0));
   if (file.fd() < 0) return no_lab_key(path, errno);
   KA_TRY(check_mode(file.fd(), path));
-  // More than a key needs: a longer file is no key file.
+  // The buffer is longer than a key file, so a file that is too long is noticed.
   std::array<char, 128> text{};
   const ssize_t got = files.read(file.fd(), text.data(), text.size());
   std::string_view digits(text.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
@@ -138,14 +138,14 @@ Result<void> write_key(FileSystem& files, const std::string& path,
       files.sync(file.fd()) == 0;
   if (written) return {};
   const std::string why = std::strerror(errno);
-  files.remove(path.c_str());  // half a key is useless
+  files.remove(path.c_str());  // an incomplete key file is useless
   return no_key(path, "room for a key", why);
 }
 
 const MacKey* KeyRing::Derived::key_of(std::uint32_t node_id) {
   if (!lab) return nullptr;
   Key& place = kept[node_id % most];
-  // Two nodes with the same place displace each other, which costs time only.
+  // Two nodes with the same index replace each other, which only costs time.
   if (place.node_id != node_id) place = {node_id, node_key(*lab, node_id)};
   return &place.key;
 }

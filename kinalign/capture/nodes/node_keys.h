@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lab key, the node keys derived from it, and the key files. docs/formats/imu_node_example.md,
-// "Keys".
+// The lab key, the node keys derived from it, and the key files. See "Keys" in
+// docs/formats/imu_node_example.md.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -23,42 +23,42 @@ using LabKey = std::array<std::uint8_t, 32>;
 /// The first 16 bytes of HMAC-SHA-256(lab key, "kinalign node key 7"); 7 is the node id in decimal.
 MacKey node_key(const LabKey& lab, std::uint32_t node_id);
 
-/// Random values from the system. A secret is used in one run only and never leaves the program.
+/// Random values from the system. A secret is used in one run only and is never stored or sent.
 Result<LabKey> new_lab_key();
 Result<SipHashKey> new_secret();
 
 /// The key as text, "000102…": two lowercase hexadecimal digits per byte.
 std::string key_text(std::span<const std::uint8_t> key);
 
-/// Reads a key file: 64 hexadecimal digits and at most one line end. A file that others may read is
-/// refused (ErrorKind::exposed_key). If this user may not read the file, the error is
-/// ErrorKind::forbidden_key; if the file does not exist, ErrorKind::no_such_file. No message shows
-/// a byte of the file.
+/// Reads a key file: 64 hexadecimal digits and at most one line end. A file that other users may
+/// read is refused (ErrorKind::exposed_key). If this user may not read the file, the error is
+/// ErrorKind::forbidden_key. If the file does not exist, the error is ErrorKind::no_such_file. No
+/// message shows a byte of the file.
 Result<LabKey> read_lab_key(FileSystem& files, const std::string& path);
 
-/// Writes the key's text and a line end to a new file of mode 0600. An existing file is never
-/// overwritten, because a node whose key is lost must be flashed again.
+/// Writes the key as text with a line end to a new file of mode 0600. An existing file is never
+/// overwritten, because nodes whose key is lost must be flashed again.
 Result<void> write_key(FileSystem& files, const std::string& path,
                        std::span<const std::uint8_t> key);
 
-/// The keys of all nodes. After a change the previous keys stay valid for a minute.
-/// Nodes are changed one after another, so for a while some still have the old key.
+/// The keys of all nodes. After a change of the lab key, the previous keys stay valid for a minute,
+/// because nodes get their new keys one after another.
 class KeyRing {
  public:
   static constexpr Duration old_key_lasts = std::chrono::seconds(60);
 
-  /// Without a lab key no node has a key, and a MAC cannot be checked.
+  /// Without a lab key no node has a key, and no MAC can be checked.
   explicit KeyRing(const std::optional<LabKey>& lab = std::nullopt) : now_(lab) {}
 
   bool keyed() const { return now_.lab.has_value(); }
-  /// nullptr: no key. The pointer is valid until the next call.
+  /// Returns nullptr if there is no lab key. The pointer is valid until the next call.
   const MacKey* key_of(std::uint32_t node_id) { return now_.key_of(node_id); }
   const MacKey* old_key_of(std::uint32_t node_id, HostTime now);
 
   void replace(const LabKey& lab, HostTime now);
 
  private:
-  /// A cache of derived keys, indexed by id modulo `most`. Deriving one takes a microsecond or two.
+  /// A cache of derived keys, indexed by id modulo `most`. Deriving a key takes 1 to 2 us.
   struct Derived {
     explicit Derived(const std::optional<LabKey>& from) : lab(from), kept(from ? most : 0) {}
     const MacKey* key_of(std::uint32_t node_id);

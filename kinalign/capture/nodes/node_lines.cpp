@@ -14,7 +14,7 @@ namespace kinalign {
 namespace {
 
 constexpr Duration between_sockets = std::chrono::seconds(1);
-// sockets at once: one for each of 64 nodes, and the open ones
+// sockets at once: one for each of 64 nodes, and the sockets for all senders
 constexpr std::size_t most_ready = 80;
 
 /// A link-local address (fe80::/10) is valid on one interface only, which is not known here.
@@ -24,7 +24,7 @@ bool is_link_local(const HostAddress& host) {
 
 }  // namespace
 
-// Numbers of open sockets begin after those of the lines.
+// The open sockets get the numbers after those of the lines.
 NodeLines::NodeLines(std::span<const UdpSocket> open, std::size_t most)
     : open_(open), lines_(most), poll_(::epoll_create1(EPOLL_CLOEXEC)) {
   for (std::size_t i = 0; i < open_.size(); ++i) {
@@ -40,7 +40,7 @@ void NodeLines::wait_for(const UdpSocket& socket, std::uint64_t number) {
   ::epoll_ctl(poll_.fd(), EPOLL_CTL_ADD, socket.fd(), &event);
 }
 
-// A node that keeps changing its address gets at most one new socket per second.
+// A node whose address changes often gets at most one new socket per second.
 void NodeLines::follow(std::size_t stream, const Way& way, std::uint16_t port, HostTime now) {
   Line& line = lines_[stream];
   if (line.socket && line.way == way) return;
@@ -48,7 +48,7 @@ void NodeLines::follow(std::size_t stream, const Way& way, std::uint16_t port, H
   line.asked = now;
   line.way = way;
   if (line.socket) dropped_before_ += dropped_by_kernel(*line.socket);
-  line.socket.reset();  // closing removes it from poll_
+  line.socket.reset();  // closing the socket removes it from poll_
   if (is_link_local(way.from.host) || is_link_local(way.to)) return;
   auto socket = UdpSocket::connected(way.to, port, way.from.host, way.from.port);
   if (!socket) return;
@@ -57,7 +57,7 @@ void NodeLines::follow(std::size_t stream, const Way& way, std::uint16_t port, H
   wait_for(*line.socket, stream);
 }
 
-// Sockets of nodes come first: their numbers are lower than those of the open sockets.
+// Sockets of nodes come first, because their numbers are lower than those of the open sockets.
 std::span<const UdpSocket* const> NodeLines::ready() {
   std::array<epoll_event, most_ready> events{};
   ready_.clear();
@@ -68,7 +68,7 @@ std::span<const UdpSocket* const> NodeLines::ready() {
   for (const epoll_event& event : std::span(events).first(count)) {
     const auto number = static_cast<std::size_t>(event.data.u64);
     const bool is_line = number < lines_.size();
-    // A line without a socket has nothing to read.
+    // A closed socket may still be in the list of events.
     if (is_line && !lines_[number].socket) continue;
     ready_.push_back(is_line ? &*lines_[number].socket : &open_[number - lines_.size()]);
   }

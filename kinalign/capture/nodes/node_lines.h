@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// One socket per known node, connected to the node's address, so that the kernel puts the node's
-// datagrams into a buffer of their own. Strangers can fill that buffer only by forging the node's
-// address and port. Link-local addresses get no socket. Before such a socket is connected, it
-// receives a share of all datagrams of the port (SO_REUSEPORT). These stay in its buffer and are
-// read like all others, so the reader must go by each datagram's address. The class also owns the
-// descriptor on which a receiver waits.
+// One socket per known node, connected to the node's address. The kernel then buffers the node's
+// datagrams separately. Other senders can fill that buffer only by forging the node's address and
+// port.
+//
+// Link-local addresses get no socket. Before a socket is connected, it receives a share of all
+// datagrams of the port (SO_REUSEPORT). These datagrams stay in its buffer and are read later, so
+// the reader must use each datagram's address. The class also owns the descriptor on which a
+// receiver waits.
 #pragma once
 
 #include "kinalign/capture/net/udp_socket.h"
@@ -19,14 +21,14 @@ namespace kinalign {
 
 class NodeLines {
  public:
-  /// `open`: the sockets for all senders. They must not move, and they share their port from now
-  /// on.
+  /// `open`: the sockets for all senders. They must not move in memory. From now on they share
+  /// their port.
   NodeLines(std::span<const UdpSocket> open, std::size_t most);
 
-  /// The path of a node's datagrams: from `way.from` to `way.to`, an address of this host. If the
-  /// system gives no socket, the open sockets receive the node's datagrams, and a socket is asked
-  /// for again after a second. A node whose addresses alternate gets a new socket once a second at
-  /// most.
+  /// The source and destination of a node's datagrams: from `way.from` to `way.to`, an address of
+  /// this host. If the system gives no socket, the open sockets receive the node's datagrams, and
+  /// the next attempt follows after a second. A node whose address changes often gets at most one
+  /// new socket per second.
   struct Way {
     NodeAddress from;
     HostAddress to{};
@@ -34,15 +36,15 @@ class NodeLines {
   };
   void follow(std::size_t stream, const Way& way, std::uint16_t port, HostTime now);
 
-  /// Readable when any of the sockets is readable.
+  /// Descriptor that becomes readable when any of the sockets is readable.
   int fd() const { return poll_.fd(); }
-  /// The sockets that can be read, those of nodes first.
+  /// The readable sockets, those of nodes first.
   std::span<const UdpSocket* const> ready();
-  /// Datagrams that the kernel dropped on all sockets, closed ones included.
+  /// Number of datagrams that the kernel dropped on all sockets, including closed sockets.
   std::uint64_t dropped() const;
 
  private:
-  /// One for each stream of the receiver, by its number.
+  /// The socket of one stream. Streams are numbered as in the receiver.
   struct Line {
     Way way;
     std::optional<UdpSocket> socket;

@@ -12,23 +12,23 @@ namespace kinalign {
 
 namespace {
 
-constexpr int batches_in_turn = 16;  // batches of one socket before other sockets have their turn
+constexpr int batches_in_turn = 16;  // batches of one socket before other sockets are read
 
 }  // namespace
 
-// A stream's place may be given to another node, and the host's axis may begin a new epoch. The
-// clock is then replaced.
+// The clock of one stream. It is replaced if the stream is given to another node or the host's time
+// axis begins a new epoch.
 struct NodeReceiver::StreamClock {
-  // number of the stream, and epoch of the host axis, for which the clock is valid
+  // the stream's number and the epoch of the host's time axis for which the clock is valid
   std::uint32_t number = 0, epoch = 0;
   std::uint32_t node_id = 0;
   LiveClock clock;
   NodeTime n{};                     // counter of the newest frame
-  std::optional<ClockStamp> stamp;  // that counter reading on the host's axis
+  std::optional<ClockStamp> stamp;  // host time of the counter reading `n`
   // Arrival of the newest frame.
   HostTime last_arrival = HostTime::min();
   bool counts = false;  // the node has a counter
-  // One-way delay of a node without a counter: the last, the sum, and the number of delays.
+  // One-way delay of a node without a counter: the last delay, the sum and the number of delays.
   std::optional<Duration> one_way;
   Duration ways{0};
   std::int64_t confirmed = 0;
@@ -78,9 +78,9 @@ bool NodeReceiver::may_answer(const Datagram& datagram) {
 }
 
 /// The clocks are updated after the whole batch is answered. An answer contains its departure, so
-/// any work between reading the clock and sending delays the answer in one direction only. Measured
-/// on loopback (median): 6 us instead of 20 us; in a burst of 16 frames 38 us instead of 42 us,
-/// since they are judged together.
+/// work between reading the clock and sending makes the answer appear faster or slower than the
+/// request. Measured on loopback (median): 6 us instead of 20 us; in a burst of 16 frames 38 us
+/// instead of 42 us.
 void NodeReceiver::take(const UdpSocket& socket, std::size_t datagrams) {
   kept_length_ = 0;
   for (std::size_t i = 0; i < datagrams; ++i) {
@@ -89,7 +89,7 @@ void NodeReceiver::take(const UdpSocket& socket, std::size_t datagrams) {
     const NodeArrival arrival{
         datagram.bytes, {datagram.from, datagram.from_port}, axis_.arrival(datagram.received)};
     const NodeMessage message = responder_->receive(arrival);
-    // The clock is read last, just before the answer is made.
+    // The clock is read as late as possible, just before the answer is made.
     const auto answer = responder_->answer(axis_.now(), batch_->answer_to(i));
     if (!answer.empty()) batch_->queue(i, datagram, answer.size());
     if (message.verdict == NodeVerdict::refused) continue;
@@ -104,7 +104,7 @@ void NodeReceiver::take(const UdpSocket& socket, std::size_t datagrams) {
   }
 }
 
-// Readings are copied, because the next datagram overwrites those of the responder.
+// Readings are copied, because the responder reuses its memory for the next datagram.
 void NodeReceiver::keep(const NodeArrival& arrival, const NodeMessage& message) {
   Kept& kept = kept_[kept_length_++];
   kept.arrival = arrival;  // the bytes stay valid until the next batch
@@ -113,7 +113,7 @@ void NodeReceiver::keep(const NodeArrival& arrival, const NodeMessage& message) 
   kept.message.readings = kept.readings;
 }
 
-/// Called after all ready sockets were read, because it may close one of them.
+/// Called after all readable sockets were read, because this call may close one of them.
 void NodeReceiver::follow() {
   for (std::size_t i = 0; i < arrived_at_.size(); ++i) {
     if (!arrived_at_[i]) continue;
@@ -123,7 +123,7 @@ void NodeReceiver::follow() {
   }
 }
 
-// Events of a clock that is replaced are kept.
+// Events of a clock are kept when the clock is replaced.
 NodeReceiver::StreamClock& NodeReceiver::clock_of(std::size_t stream) {
   std::unique_ptr<StreamClock>& clock = clocks_[stream];
   if (clock != nullptr && is_current(*clock, stream)) return *clock;
@@ -146,8 +146,8 @@ LiveClock& NodeReceiver::follow_clock(Kept& kept) {
   NodeMessage& message = kept.message;
   StreamClock& clock = clock_of(message.stream);
   if (message.exchange) {
-    // Rounding may put an arrival microseconds before the previous one. The order of arrival is
-    // kept; a later arrival is still a correct bound.
+    // Rounding may put an arrival microseconds before the previous arrival. The stamp is then
+    // raised to the previous one. A stamp that is too late still gives a correct clock bound.
     clock.last_arrival = message.exchange->h_rx =
         std::max(clock.last_arrival, message.exchange->h_rx);
     clock.clock.push(*message.exchange);
@@ -165,7 +165,7 @@ LiveClock& NodeReceiver::follow_clock(Kept& kept) {
   return clock.clock;
 }
 
-// Silent nodes are looked for at each call, the host's clocks once a second.
+// Each call looks for silent nodes. The host's clocks are read once a second.
 void NodeReceiver::tick() {
   axis_.look();
   const HostTime now = axis_.now();
@@ -202,7 +202,7 @@ std::vector<NodeStatus> NodeReceiver::status() const {
   return all;
 }
 
-// A node without a counter has one-way delays, but no clock model.
+// A node without a counter has one-way delays but no clock model.
 void NodeReceiver::add_clock(NodeStatus& status, const StreamClock& clock) {
   if (clock.confirmed > 0) {
     status.one_way = clock.one_way;
@@ -233,7 +233,7 @@ std::vector<NodeReceiver::StreamEvent> NodeReceiver::take_clock_events() {
 
 std::vector<NodeReceiver::StreamEvent> NodeReceiver::take_events_of(std::size_t stream) {
   std::vector<StreamEvent> all;
-  // The clock's own node id is used, since the stream may belong to another node now.
+  // The event gets the node id of the clock, since the stream may belong to another node by now.
   StreamClock& clock = *clocks_[stream];
   for (const ClockEvent& event : clock.clock.take_events()) {
     all.push_back({stream, clock.node_id, event});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nodes' port: sockets around a NodeResponder, and one clock per node. No call blocks. A
-// program that serves several ports (time_server.h) drains this one first.
+// The nodes' port: the sockets, a NodeResponder, and one clock per node. No call blocks. A program
+// that serves several ports (time_server.h) reads this port first.
 #pragma once
 
 #include "kinalign/capture/net/datagram_batch.h"
@@ -38,21 +38,22 @@ class NodeReceiver {
   /// `clocks` must outlive the receiver.
   static Result<NodeReceiver> open(const NodeReceiverOptions& options, ClockReader& clocks);
 
-  /// Reads and answers the waiting datagrams, a few hundred per socket at most.
+  /// Reads and answers the waiting datagrams, at most a few hundred per socket.
   void drain();
-  /// Datagrams since the port was opened, of any kind.
+  /// Number of datagrams since the port was opened, valid or not.
   std::uint64_t received() const { return datagrams_; }
-  /// Call about four times a second. It finds silent nodes and reads the host's clocks.
+  /// Call about four times a second. Reports nodes that fell silent and reads the host's clocks.
   void tick();
 
   /// Called for each datagram that passed the checks of port and key, in the order of arrival. If
-  /// the datagram is accepted, `clock` is its node's clock, already updated; else it is nullptr.
+  /// the datagram is accepted, `clock` is the clock of its node, already updated; otherwise
+  /// nullptr.
   using Watcher =
       std::function<void(const NodeArrival& arrival, const NodeMessage& message, LiveClock* clock)>;
   void watch(Watcher watcher) { watcher_ = std::move(watcher); }
 
   const std::vector<UdpSocket>& sockets() const { return *sockets_; }
-  /// Readable when a datagram is waiting.
+  /// Descriptor that becomes readable when a datagram is waiting.
   int fd() const { return lines_.fd(); }
   const NodeCounts& counts() const { return responder_->counts(); }
   const RefusedNodes& refused_nodes() const { return responder_->refused_nodes(); }
@@ -60,8 +61,8 @@ class NodeReceiver {
   /// The number of answers that the system did not accept.
   std::uint64_t unsent() const { return unsent_; }
   std::uint32_t epoch() const { return axis_.epoch(); }
-  /// Ignored datagrams. They were sent to a broadcast or multicast address, so many hosts would
-  /// answer, or they came from port 0, so the answer could not be received.
+  /// Numbers of ignored datagrams. Many hosts would answer a datagram to a broadcast or multicast
+  /// address. An answer to port 0 could not be received.
   std::uint64_t not_unicast() const { return not_unicast_; }
   std::uint64_t from_port_0() const { return from_port_0_; }
   /// Sorted by node id; nodes with the same id are sorted by stream.
@@ -77,10 +78,11 @@ class NodeReceiver {
     ClockEvent event;
   };
   std::vector<StreamEvent> take_clock_events();
-  /// Pairs of raw and wall clock, read once a second, since the previous call.
+  /// Pairs of host time and UTC since the previous call. One pair is read each second.
   std::vector<ClockPair> take_pairs() { return pairs_.take(); }
-  /// Events and pairs that were lost because nobody took them in time. They may include withdrawals
-  /// of a clock that was replaced (by another node or in another epoch).
+  /// Number of events and pairs that were lost because the caller did not take them in time. Lost
+  /// events may include withdrawn bounds of a clock that was replaced (by another node or in
+  /// another epoch).
   std::uint64_t missed_events() const;
 
  private:
@@ -115,7 +117,7 @@ class NodeReceiver {
   std::vector<Kept> kept_;
   std::size_t kept_length_ = 0;
   Watcher watcher_;
-  // by stream: destination address of its frames since the last follow()
+  // by stream: destination address of its newest frame since the last follow()
   std::vector<std::optional<HostAddress>> arrived_at_;
   std::uint64_t datagrams_ = 0, unsent_ = 0, not_unicast_ = 0, from_port_0_ = 0;
   HostTime next_watch_ = HostTime::min();

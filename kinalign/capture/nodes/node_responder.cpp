@@ -20,8 +20,8 @@ NodeSign sign_of(const NodeArrival& arrival, const DatagramOrigin& origin) {
           arrival.h_rx,   origin.sequence, std::nullopt};
 }
 
-// Answers go also to datagrams that are not accepted: a node that has just started, or whose frames
-// were delayed, needs an answer that it can echo.
+// Some datagrams that are not accepted get an answer too. A node that has just started, or whose
+// frames were delayed, needs an answer that it can echo.
 bool is_answered(NodeVerdict verdict) {
   return verdict == NodeVerdict::accepted || verdict == NodeVerdict::held ||
          verdict == NodeVerdict::replayed || verdict == NodeVerdict::earlier_session;
@@ -38,14 +38,14 @@ NodeMessage NodeResponder::receive(const NodeArrival& arrival) {
   message.verdict = judge(arrival, message);
   ++counts_.verdicts[message.verdict];
   if (!is_answered(message.verdict)) asked_.by = nullptr;
-  // The pace is asked last, so that frames which get no answer anyway do not use it up.
+  // The pace is asked last, so that only frames which may be answered are counted.
   if (asked_.by != nullptr && !asked_.by->pace.ask(arrival.h_rx)) asked_.by = nullptr;
   return message;
 }
 
 NodeVerdict NodeResponder::judge(const NodeArrival& arrival, NodeMessage& message) {
   Envelope envelope;
-  // Everything that can be checked without a key comes first.
+  // All checks that need no key are made first.
   const NodeRefusal refusal = open_envelope(arrival.bytes, envelope);
   message.node_id = envelope.origin.node_id;
   if (refusal != NodeRefusal::none) {
@@ -60,7 +60,7 @@ NodeVerdict NodeResponder::judge(const NodeArrival& arrival, NodeMessage& messag
       return judge_request(arrival, envelope, message);
     case DatagramType::confirm:
       return judge_confirm(arrival, envelope, message);
-    default:  // decode refuses types that only a host sends
+    default:  // decode refuses the types that only a host sends
       return judge_frame(arrival, envelope, message);
   }
 }
@@ -95,7 +95,7 @@ bool NodeResponder::unlock(const Envelope& envelope, const NodeArrival& arrival,
   return false;
 }
 
-/// Anyone can cause this event with forged datagrams, so refused_nodes_ limits its rate.
+/// Forged datagrams can cause this event too, so refused_nodes_ limits its rate.
 void NodeResponder::report_wrong_key(NodeRefusal refusal, const DatagramOrigin& origin,
                                      const NodeArrival& arrival) {
   const bool is_key = refusal == NodeRefusal::no_key || refusal == NodeRefusal::no_mac ||
@@ -109,8 +109,8 @@ void NodeResponder::report_wrong_key(NodeRefusal refusal, const DatagramOrigin& 
                  .refusal = refusal});
 }
 
-// The sequence number is checked before the echo, and the echo before the session is admitted: an
-// echo proves that the frame is not a recording played back.
+// An echo proves that the frame is not a replayed recording. The order of checks is: sequence
+// number, echo, session.
 NodeVerdict NodeResponder::judge_frame(const NodeArrival& arrival, const Envelope& envelope,
                                        NodeMessage& message) {
   if (!unlock(envelope, arrival, frame_)) return NodeVerdict::refused;
@@ -136,8 +136,8 @@ NodeVerdict NodeResponder::judge_frame(const NodeArrival& arrival, const Envelop
   return NodeVerdict::accepted;
 }
 
-// A request has no echo. A new session is therefore admitted only by a confirm, unless no key is
-// used and the boot id is new.
+// A request has no echo. Without keys, a request with a new boot id admits its session. In all
+// other cases only a confirm admits a new session.
 NodeVerdict NodeResponder::judge_request(const NodeArrival& arrival, const Envelope& envelope,
                                          NodeMessage& message) {
   ClocklessRequest request;
@@ -158,8 +158,8 @@ NodeVerdict NodeResponder::judge_request(const NodeArrival& arrival, const Envel
   return NodeVerdict::accepted;
 }
 
-// A confirm names an answer of this run and so proves that it is not a recording played back. The
-// times come from the table of answers; a wrong copy of them is only counted.
+// A confirm names an answer of this run, which proves that it is not a replayed recording. The
+// times come from the table of answers. If the copies in the confirm differ, they are only counted.
 NodeVerdict NodeResponder::judge_confirm(const NodeArrival& arrival, const Envelope& envelope,
                                          NodeMessage& message) {
   ClocklessConfirm confirm;
@@ -183,11 +183,11 @@ NodeVerdict NodeResponder::judge_confirm(const NodeArrival& arrival, const Envel
   return NodeVerdict::accepted;
 }
 
-// The session that the datagram continues, or a new one that is held.
+// Finds the session that the datagram continues, or makes a new session that is held.
 NodeVerdict NodeResponder::find_session(const NodeSign& sign, NodeSession*& session) {
   session = table_.session_of(sign);
   if (session != nullptr) return NodeVerdict::accepted;
-  // A known address may begin new sessions freely; the limit is for strangers.
+  // Only unknown addresses are limited; a known address may begin any number of sessions.
   if (!table_.knows_address(sign.from.host, sign.at)) {
     const std::uint64_t hash = siphash_2_4(secret_, address_prefix(sign.from.host));
     if (unknown_senders_.ask(hash, sign.at) != RateLimit::Verdict::answer)
@@ -197,12 +197,13 @@ NodeVerdict NodeResponder::find_session(const NodeSign& sign, NodeSession*& sess
   return session != nullptr ? NodeVerdict::accepted : NodeVerdict::no_room;
 }
 
-/// Finds the session of a datagram that may be answered, and takes the datagram's sequence number.
+/// Finds the session of a datagram that may be answered, and registers the datagram's sequence
+/// number.
 NodeVerdict NodeResponder::find_place(const NodeSign& sign, NodeSession*& session,
                                       NodeMessage& message) {
   if (const auto found = find_session(sign, session); found != NodeVerdict::accepted) return found;
   Counter& sequences = session->sequences;
-  // The first number is put one turn above zero, so that numbers before it are not negative.
+  // The first number gets an offset of 2^32, so that earlier numbers are not negative.
   const std::int64_t number =
       sequences.empty() ? (std::int64_t{1} << 32) + sign.sequence : sequences.unwrap(sign.sequence);
   const Counter::Place place = sequences.place_of(number);
@@ -215,20 +216,20 @@ NodeVerdict NodeResponder::find_place(const NodeSign& sign, NodeSession*& sessio
   return NodeVerdict::accepted;
 }
 
-/// Admits the session if necessary. `echoed` is the time when the answer that this datagram names
-/// was sent.
+/// Admits the session if necessary. `echoed` is the departure of the answer that this datagram
+/// names.
 NodeVerdict NodeResponder::take_session(NodeSession& session, const NodeSign& sign,
                                         std::optional<HostTime> echoed) {
   session.last_arrival = sign.at;
   if (session.state == State::live) return NodeVerdict::accepted;
   if (session.state == State::earlier) {
-    // The datagram was sent before its node started again, or another node has the same id. Only
-    // another node can have received an answer that was sent after the restart.
+    // Either the datagram was sent before its node started again, or another node has the same id.
+    // Only another node can have received an answer that was sent after the restart.
     if (!echoed || *echoed <= session.replaced) return NodeVerdict::earlier_session;
     return table_.part(session, sign.at) ? NodeVerdict::accepted : NodeVerdict::no_room;
   }
-  // Without a key and with new ids there is nothing to prove, so the first datagram admits the
-  // session.
+  // Without a key, the first datagram with new ids admits the session, because there is nothing to
+  // prove.
   const bool again = table_.knows_boot(session.node_id, session.boot_id);
   if (!echoed && (keys_.keyed() || again)) {
     return again ? NodeVerdict::replayed : NodeVerdict::held;
@@ -236,8 +237,8 @@ NodeVerdict NodeResponder::take_session(NodeSession& session, const NodeSign& si
   return table_.admit(session, sign.at) ? NodeVerdict::accepted : NodeVerdict::no_room;
 }
 
-// An echo whose arrival lies after the frame's own departure, or beyond any counter, is counted as
-// `future`.
+// An echo is counted as `future` if its arrival lies after the frame's departure or is too large
+// for a counter.
 std::optional<Exchange::Echo> NodeResponder::take_echo(NodeSession& session, std::int64_t n_tx_us) {
   EchoVerdict verdict = EchoVerdict::none;
   GivenAnswer answer;
@@ -264,7 +265,7 @@ void NodeResponder::keep(std::span<const NodeSample> samples, std::optional<std:
   message.readings = std::span(readings_).first(samples.size());
 }
 
-// Counts an accepted datagram, and notices that its node has returned or moved.
+// Counts an accepted datagram and reports if its node has returned or has a new address.
 void NodeResponder::accept(NodeSession& session, const NodeSign& sign, NodeMessage& message) {
   NodeStream& stream = table_.stream(session.stream);
   message.stream = session.stream;
@@ -272,7 +273,7 @@ void NodeResponder::accept(NodeSession& session, const NodeSign& sign, NodeMessa
   ++session.accepted;
   if (stream.silent) table_.report(NodeEvent::Kind::returned, session, sign.at);
   stream.silent = false;
-  // A late datagram may come from the address that the node had before.
+  // A late datagram may come from the previous address of the node.
   if (message.late || session.address == sign.from) return;
   session.address = sign.from;
   table_.report(NodeEvent::Kind::moved, session, sign.at);
@@ -284,7 +285,7 @@ std::span<const std::uint8_t> NodeResponder::answer(HostTime h_tx, std::span<std
   asked_.by = nullptr;
   std::array<std::uint8_t, sizeof nonces_> number{};
   std::memcpy(number.data(), &++nonces_, number.size());
-  // A counter hashed with the secret: no nonce repeats soon, and nobody can guess the next one.
+  // The nonce is a counter hashed with the secret. It does not repeat soon and can't be guessed.
   const auto nonce = static_cast<std::uint32_t>(siphash_2_4(secret_, number));
   const bool clockless = asked_.type == DatagramType::request;
   const std::uint32_t sequence = clockless ? asked_.origin.sequence : session.next_reply++;

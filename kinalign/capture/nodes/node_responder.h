@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host's side of the nodes' protocol (docs/formats/imu_node.md). It decides about each
-// datagram, makes the answer, and extracts what the datagram says about its node's clock. It uses
-// no socket and no clock, and its memory is fixed. Time is an argument, so every fault can be
-// tested.
+// The host's side of the nodes' protocol (docs/formats/imu_node.md). It judges each datagram, makes
+// the answer, and extracts the clock readings and samples. It uses no socket and no clock, and its
+// memory is fixed. The caller passes the time, so tests can produce every fault.
 #pragma once
 
 #include "kinalign/capture/net/rate_limit.h"
@@ -24,25 +23,25 @@ namespace kinalign {
 struct NodeArrival {
   std::span<const std::uint8_t> bytes;
   NodeAddress from;
-  HostTime h_rx{};  // T2 of RFC 5905; for a confirm T6
+  HostTime h_rx{};  // arrival: T2 of RFC 5905; for a confirm T6
 };
 
-/// A sample and the counter when it was taken. If the node has no counter, n is the zero of
-/// NodeTime.
+/// A sample and the node's counter when it was taken. If the node has no counter, n is zero.
 struct NodeReading {
   NodeTime n{};
   NodeSample sample;
   SampleFaults faults;
 };
 
-/// The content of an accepted datagram. A frame has `exchange`, a confirm has `clockless`.
+/// The content of a datagram. An accepted frame has `exchange`; an accepted confirm has
+/// `clockless`.
 struct NodeMessage {
   NodeVerdict verdict = NodeVerdict::refused;
-  // as claimed; if a key is used and the datagram is not refused, the MAC proves it
+  // claimed id; proved by the MAC if a key is used and the datagram is not refused
   std::uint32_t node_id = 0;
   std::size_t stream = 0;   // only if accepted
-  std::uint64_t frame = 0;  // the datagram's unwrapped number; lost datagrams are counted too
-  bool late = false;        // a frame or request with a higher number arrived before
+  std::uint64_t frame = 0;  // unwrapped number of the datagram; gaps show lost datagrams
+  bool late = false;        // a frame or request with a higher number arrived earlier
   std::optional<Exchange> exchange;
   std::optional<ClocklessExchange> clockless;
   std::span<const NodeReading> readings;  // oldest first; valid until the next datagram
@@ -50,28 +49,28 @@ struct NodeMessage {
 
 struct NodeResponderOptions {
   std::optional<LabKey> lab_key;
-  // random in each run; nonces and the hash keys of unknown senders are made with it
+  // random in each run; used for nonces and for hashes of unknown senders
   SipHashKey secret{};
 };
 
-/// Use: receive(), then answer() for the same datagram, before the next one.
+/// For each datagram call receive(), then answer(), before the next datagram.
 class NodeResponder {
  public:
   explicit NodeResponder(const NodeResponderOptions& options);
 
   /// Judges one datagram. Call in the order of arrival.
   NodeMessage receive(const NodeArrival& arrival);
-  /// Makes the answer to the previous datagram at the front of `out`. Empty: no answer is due. The
-  /// layouts ensure that an answer is never longer than its request. `h_tx` must be read just
-  /// before this call, and the answer must be sent at once.
+  /// Writes the answer to the previous datagram to the front of `out`. Empty: there is no answer.
+  /// An answer is never longer than its request, because of the message layouts. `h_tx` must be
+  /// read just before this call, and the answer must be sent at once.
   std::span<const std::uint8_t> answer(HostTime h_tx, std::span<std::uint8_t> out);
 
-  /// Sets the flag in replies that tells a node that the host has a certified interval for its
-  /// clock.
+  /// Sets the flag in replies which tells a node that the host has a certified interval for the
+  /// node's clock.
   void set_locked(std::size_t stream, bool locked) { table_.stream(stream).locked = locked; }
   /// Changes the lab key. The previous keys stay valid for one more minute.
   void replace_key(const LabKey& lab, HostTime now) { keys_.replace(lab, now); }
-  /// Call from time to time; it finds nodes that fell silent.
+  /// Call from time to time. Reports nodes that fell silent.
   void tick(HostTime now) { table_.tick(now); }
 
   const NodeStream& stream(std::size_t i) const { return table_.stream(i); }
@@ -84,8 +83,8 @@ class NodeResponder {
   std::uint64_t missed_events() const { return table_.missed_events(); }
 
  private:
-  /// `judge` passes a datagram on to the function of its type. These find and admit its session and
-  /// fill `message`.
+  /// `judge` passes a datagram to the function for its type. That function finds or admits the
+  /// session and fills `message`.
   NodeVerdict judge(const NodeArrival& arrival, NodeMessage& message);
   NodeVerdict judge_frame(const NodeArrival& arrival, const Envelope& envelope,
                           NodeMessage& message);
@@ -125,7 +124,7 @@ class NodeResponder {
     DatagramType type{};
     HostTime h_rx{};
     std::uint64_t frame = 0;
-    std::optional<MacKey> key;  // the key of the datagram's MAC; absent: it has no MAC
+    std::optional<MacKey> key;  // the key of the datagram's MAC; absent: the datagram has no MAC
     bool old_key = false;
   } asked_;
 };

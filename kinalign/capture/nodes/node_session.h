@@ -14,23 +14,23 @@
 
 namespace kinalign {
 
-/// A free session has no meaning in its other members. A session is made anew when its place is
-/// used again.
+/// If the state is free, the other members have no meaning. When the place is reused, all members
+/// are set anew.
 struct NodeSession {
   enum class State : std::uint8_t {
     free,
-    held,    // not admitted yet: must echo an answer of this run of the host
+    held,    // not admitted yet; the node must first echo an answer of this run
     live,    // the present session of its stream
-    earlier  // the node has started again since
+    earlier  // the node has started again since this session
   };
   State state = State::free;
   std::uint32_t node_id = 0, boot_id = 0;
-  BootKey key = 0;  // the boot id; the upper bits hold a number if this boot id was used before
+  BootKey key = 0;  // the boot id, and in the upper bits a number if this boot id was used before
   std::size_t stream = 0;  // undefined while the session is held
   NodeAddress address;     // source address of its newest frame
-  // First arrival, last arrival, and the start of the next session.
+  // Arrival of the first and the newest frame, and the start of the next session.
   HostTime begun{}, last_arrival{}, replaced{};
-  bool old_key = false;  // its newest frame was signed with the key that is being replaced
+  bool old_key = false;  // the newest frame was signed with the key that is being replaced
   Counter sequences;
   NodeCounter counter;
   AnswerTable answers;

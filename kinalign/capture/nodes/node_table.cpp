@@ -13,16 +13,17 @@ namespace {
 using State = NodeSession::State;
 using Kind = NodeEvent::Kind;
 
-// a frame may be this much older than a frame that arrived before it
+// a late frame may be this much older than a frame that arrived before
 constexpr std::int64_t most_back_us = 1'000'000;
-constexpr std::int64_t most_ahead_us = 2'000'000;  // the limit for the same node at another address
-// An address counts as known, and a silent node's stream is not reused, for this long.
+// greatest jump of the counter that is accepted together with a new address
+constexpr std::int64_t most_ahead_us = 2'000'000;
+// Time for which an address stays known and a silent node's stream is not reused.
 constexpr Duration known_for = std::chrono::seconds(60);
 constexpr Duration left_after = std::chrono::seconds(10);
 constexpr Duration held_for = std::chrono::seconds(1);  // a held session is kept at least this long
 constexpr std::size_t most_held = 4;                    // held sessions of one node id
 
-// True for sessions in use that have both ids.
+// Returns whether the session is in use and has both ids.
 bool has_ids(const NodeSession& session, std::uint32_t node_id, std::uint32_t boot_id) {
   return session.state != State::free && session.node_id == node_id && session.boot_id == boot_id;
 }
@@ -34,20 +35,21 @@ bool continues(const NodeSession& session, const NodeSign& sign) {
   const std::int64_t n = session.counter.unwrap(*sign.counter_us, sign.at);
   const std::int64_t behind = session.counter.behind_us(n);
   if (behind > most_back_us) return false;
-  // Both counter and sequence have started again if a later reading comes with an earlier number,
-  // or with a number far behind. The counter then only seems to continue: it was taken for a 32-bit
-  // counter that wrapped, or it has run nearly as long as before.
+  // If the counter has a later value, but the sequence number is earlier or far behind, then the
+  // node has started again. The counter only seems to continue: a 32-bit counter was unwrapped by
+  // mistake, or the node has run nearly as long as before.
   const auto place = session.sequences.place_of(session.sequences.unwrap(sign.sequence));
   if (behind < 0 && place != Counter::Place::ahead) return false;
   if (place == Counter::Place::behind) return false;
   // If the address is unchanged, a jump ahead is a step of the node's counter. The clock model will
-  // detect it.
+  // detect that step.
   return session.address == sign.from || session.counter.ahead_us(n, sign.at) <= most_ahead_us;
 }
 
-/// Orders the sessions that a datagram may continue; a greater value is more likely. A counter that
-/// starts again passes the reading at which its earlier session ended. The present session at the
-/// same address is then the right one, otherwise the session that predicted the counter.
+/// Orders the sessions that a datagram may continue; a greater value is more likely. After a
+/// restart, the new counter at some time passes the value at which the earlier session ended. The
+/// datagram then belongs to the present session of the same address, or else to the session that
+/// predicted the counter.
 auto likelihood(const NodeSession& session, const NodeSign& sign) {
   const bool live = session.state == State::live, here = session.address == sign.from;
   bool predicted = true;
@@ -86,9 +88,9 @@ bool NodeTable::knows_address(const HostAddress& host, HostTime now) const {
   });
 }
 
-/// Returns a free place, or else that of the session silent longest among those that are not the
-/// present session of a stream. If a node has most_held held sessions already, its oldest held
-/// session is replaced.
+/// Returns a free place. If none is free, the place of the session silent longest is reused, but
+/// not that of a stream's present session. If a node already has most_held held sessions, its
+/// oldest held session is replaced.
 NodeSession* NodeTable::room_for_session(const NodeSign& sign) {
   NodeSession* oldest = nullptr;
   NodeSession* oldest_held = nullptr;
@@ -118,8 +120,8 @@ NodeSession* NodeTable::hold(const NodeSign& sign) {
       });
   NodeSession* session = same != sessions_.end() ? &*same : room_for_session(sign);
   if (session == nullptr) return nullptr;
-  // A replaced session keeps its age. Otherwise a sender that alternates two frames of an old
-  // session would keep it young, and so keep out other sessions of its id.
+  // A replaced session keeps its age. Otherwise a sender could repeat two old frames in turn and so
+  // prevent other sessions of the id.
   const HostTime begun = same != sessions_.end() ? same->begun : sign.at;
   *session = {};
   session->state = State::held;
@@ -131,8 +133,8 @@ NodeSession* NodeTable::hold(const NodeSign& sign) {
   return session;
 }
 
-/// Chooses among the streams with this node id: by boot id, then by address, then by longest
-/// silence.
+/// Chooses among the streams with this node id: first by boot id, then by address, then the one
+/// silent longest.
 NodeStream* NodeTable::stream_for(const NodeSession& session) {
   const auto rank = [&](const NodeStream& stream) {
     const NodeSession& present = sessions_[stream.session];
@@ -148,7 +150,7 @@ NodeStream* NodeTable::stream_for(const NodeSession& session) {
   return best;
 }
 
-/// Returns a free stream, or that of the node silent longest if it was silent for a minute.
+/// Returns a free stream, or the stream of the node silent longest if it was silent for a minute.
 NodeStream* NodeTable::new_stream(const NodeSession& session, HostTime now) {
   const auto last_arrival = [this](const NodeStream& s) {
     return s.used ? sessions_[s.session].last_arrival : HostTime::min();
@@ -182,19 +184,19 @@ void NodeTable::enter(NodeSession& session, NodeStream& stream, HostTime now) {
   ++stream.sessions;
 }
 
-// A stream of the same node id continues with this session. If there is none, a new stream begins.
+// Continues a stream of the same node id with this session. If there is none, a new stream begins.
 bool NodeTable::admit(NodeSession& session, HostTime now) {
   const bool again = knows_boot(session.node_id, session.boot_id);
   NodeStream* stream = stream_for(session);
   const bool joins = stream == nullptr;
   if (joins) stream = new_stream(session, now);
   if (stream == nullptr) return false;
-  // The stream's session so far is over. Its late datagrams are still recognised.
+  // The previous session of the stream is over. Its late datagrams are still recognised.
   if (!joins) {
     sessions_[stream->session].state = State::earlier;
     sessions_[stream->session].replaced = now;
   }
-  // The same boot id again: another key keeps the clocks of the two lives apart.
+  // The boot id is used again. A different key separates the clocks of the two sessions.
   session.key = session.boot_id | (again ? ++restarts_ << 32 : 0);
   enter(session, *stream, now);
   report(joins ? Kind::joined : again ? Kind::restarted : Kind::started, session, now);
@@ -210,8 +212,8 @@ bool NodeTable::part(NodeSession& session, HostTime now) {
   return true;
 }
 
-/// Reports if a joining node was known by another id. It was if it has that node's boot id, or if
-/// it has that node's address and port and the other node has fallen silent.
+/// Reports if a joining node had another id before. This is so in two cases: another node has the
+/// same boot id, or a silent node had the same address and port.
 void NodeTable::report_name(const NodeSession& session, HostTime now) {
   for (const NodeStream& stream : streams_) {
     const NodeSession& other = sessions_[stream.session];

@@ -2,9 +2,9 @@
 // Distinguishes nodes and their sessions. The table has a fixed size of 64 streams and 256
 // sessions.
 //
-// A session is one start of a node, identified by node id and boot id. If two nodes have the same
-// id and draw the same boot id, counters and addresses distinguish them. A stream is the data of
-// one node over all its sessions.
+// A session lasts from one start of a node to the next. Node id and boot id identify it. If two
+// nodes have the same id and the same boot id, counters and addresses distinguish them. A stream is
+// the data of one node over all its sessions.
 #pragma once
 
 #include "kinalign/capture/net/event_queue.h"
@@ -20,43 +20,44 @@ struct NodeStream {
   std::uint32_t number = 0;  // unique among the streams of this run
   std::uint32_t node_id = 0;
   std::size_t session = 0;  // the present session
-  // Lives that this stream has had.
+  // Sessions of this stream, including the present one.
   std::uint64_t sessions = 0;
   std::optional<std::uint16_t> battery_mv;  // as last sent by the node
   bool locked = false;  // the flag sent in its replies, see NodeResponder::set_locked
   bool silent = false;  // the event `left` was reported
 };
 
-/// The facts about one datagram that the table needs.
+/// The facts about one datagram by which the table recognises its session.
 struct NodeSign {
   std::uint32_t node_id = 0, boot_id = 0;
   NodeAddress from;
   HostTime at{};
   std::uint32_t sequence = 0;
-  std::optional<std::uint64_t> counter_us;  // absent: the node has none
+  std::optional<std::uint64_t> counter_us;  // absent: the node has no counter
 };
 
-/// Sessions are kept after their node has started again, as long as there is room: their datagrams
-/// must not be taken for new ones.
+/// Sessions are kept after their node has started again, as long as there is room. A late datagram
+/// of such a session must not begin a new session.
 class NodeTable {
  public:
   static constexpr std::size_t most_streams = 64, most_sessions = 256;
 
   NodeTable() : sessions_(most_sessions), streams_(most_streams) {}
 
-  /// The session that this datagram continues; nullptr: none.
+  /// Returns the session that this datagram continues, or nullptr.
   NodeSession* session_of(const NodeSign& sign);
-  /// Returns whether a session with these ids is known, with any counter and address.
+  /// Returns whether a session with these ids is known. Counter and address may differ.
   bool knows_boot(std::uint32_t node_id, std::uint32_t boot_id) const;
   /// Returns whether an admitted node has sent from this address within the last minute.
   bool knows_address(const HostAddress& host, HostTime now) const;
 
-  /// Makes a session that is held: not admitted yet. nullptr: no room.
+  /// Makes a held session, which is not admitted yet. Returns nullptr if there is no room.
   NodeSession* hold(const NodeSign& sign);
   /// Admits a held session. It becomes the present session of its node's stream or of a new stream.
-  /// False: no room.
+  /// Returns false if there is no room.
   bool admit(NodeSession& session, HostTime now);
-  /// Gives an earlier session a stream of its own, since two nodes have one id. False: no room.
+  /// Gives an earlier session its own stream, since two nodes have one id. Returns false if there
+  /// is no room.
   bool part(NodeSession& session, HostTime now);
   /// Reports nodes that have fallen silent.
   void tick(HostTime now);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verdict on a datagram of the nodes' port, and on the echo in it. Each cause is counted
-// separately.
+// The verdict on a datagram of the nodes' port, and the verdict on the echo in a datagram. Each
+// verdict is counted separately.
 #pragma once
 
 #include "kinalign/capture/net/counts_by.h"
@@ -14,25 +14,25 @@ namespace kinalign {
 
 enum class NodeVerdict : std::uint8_t {
   accepted,
-  held,             // its session has not proved yet that it is not a recording played back
-  duplicate,        // its sequence number was received before
-  replayed,         // its sequence number or its counter lies too far back
-  earlier_session,  // sent before its node started again
-  limited,          // an unknown address that sends too often
+  held,             // the session has not proved yet that it is not a replayed recording
+  duplicate,        // the sequence number was received before
+  replayed,         // the sequence number or the counter is too far behind
+  earlier_session,  // sent before the node started again
+  limited,          // an unknown address sends too often
   no_room,          // the table of nodes or of sessions is full
   wrong_counter,    // the counter is higher than a counter can be
-  unknown_answer,   // a confirm of an answer that was not sent, or was already confirmed
-  refused           // refused by wire; NodeRefusal gives the cause
+  unknown_answer,   // confirms an answer that was not sent or is already confirmed
+  refused           // refused by decode (kinalign/wire); NodeRefusal gives the cause
 };
 inline constexpr std::size_t node_verdicts = 10;
 
 enum class EchoVerdict : std::uint8_t {
   none,
   taken,
-  repeated,  // the answer was named before; the node has received no newer one
-  stale,     // the reply is older than the last 256
-  unknown,   // the reply was not sent in this run
-  future     // the reply arrived after the frame left
+  repeated,  // the node has named this answer before; it has received no newer answer
+  stale,     // the answer is older than the last 256 answers
+  unknown,   // the answer was not sent in this run
+  future     // the stated arrival of the answer is after the frame's departure
 };
 inline constexpr std::size_t echo_verdicts = 6;
 
@@ -56,9 +56,9 @@ struct NodeCounts {
   CountsBy<NodeRefusal, node_refusals> refusals;  // refused datagrams
   CountsBy<EchoVerdict, echo_verdicts> echoes;    // echoes in frames of known sessions
   std::uint64_t answers = 0;
-  std::uint64_t wrong_copies = 0;   // confirms whose T2 or T3 differs from the sent one
-  std::uint64_t old_key = 0;        // datagrams with the key that was replaced
-  std::uint8_t newest_version = 0;  // highest protocol version received that is not understood
+  std::uint64_t wrong_copies = 0;   // confirms whose T2 or T3 differs from the value that was sent
+  std::uint64_t old_key = 0;        // datagrams with the key that is being replaced
+  std::uint8_t newest_version = 0;  // highest received protocol version that is not supported
 };
 
 }  // namespace kinalign

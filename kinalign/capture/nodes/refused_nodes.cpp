@@ -7,7 +7,7 @@ namespace kinalign {
 
 namespace {
 
-// Reports are limited: one per `any_every` in all, one per `each_every` for each claim.
+// At most one report per `any_every` is made, and one per `each_every` for each claim.
 constexpr Duration any_every = std::chrono::seconds(1);
 constexpr Duration each_every = std::chrono::minutes(10);
 

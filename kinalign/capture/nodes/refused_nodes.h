@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nodes that are refused because of their keys. Without a valid MAC an id is only a claim of an
-// unknown sender. The table therefore has a fixed size, the first ids stay in it, and reports are
-// limited.
+// The nodes that are refused because of their keys. Without a valid MAC, any sender can claim any
+// id. The table therefore has a fixed size and keeps the first ids. Reports are limited.
 #pragma once
 
 #include "kinalign/wire/node_datagram.h"
@@ -25,13 +24,13 @@ class RefusedNodes {
     std::optional<HostTime> reported;
   };
 
-  /// Returns whether to report this refusal now: at most one per second in all, and one per ten
-  /// minutes for each node and cause.
+  /// Returns whether to report this refusal now. At most one report per second is made, and one per
+  /// ten minutes for each node and cause.
   bool take(NodeRefusal refusal, std::uint32_t node_id, HostTime now);
 
-  /// In the order in which they were first seen.
+  /// Refused ids in the order of their first datagrams.
   std::span<const Claim> claims() const { return std::span(claims_).first(used_); }
-  /// Returns whether more nodes were refused for this cause than the table holds.
+  /// Returns whether more nodes were refused for this cause than the table can hold.
   bool others(NodeRefusal refusal) const { return others_[static_cast<std::size_t>(refusal)]; }
 
  private:

@@ -13,7 +13,7 @@ ChronyQuery::ChronyQuery(std::uint16_t port)
   chronyd.sin_family = AF_INET;
   chronyd.sin_port = htons(port);
   chronyd.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  // A connected socket receives only chronyd's datagrams.
+  // A connected socket receives datagrams only from chronyd.
   (void)::connect(socket_.fd(), reinterpret_cast<const sockaddr*>(&chronyd), sizeof chronyd);
 }
 
@@ -23,7 +23,7 @@ std::optional<ChronyTracking> ChronyQuery::latest(HostTime now) {
   receive(now);
   if (!asked_at_ || now - *asked_at_ >= again) {
     asked_at_ = now;
-    // Each request has its own number. A late answer to an earlier request is not accepted.
+    // Each request has a new number, so that late answers to earlier requests are recognised.
     const auto request = chrony_tracking_request(++sequence_);
     // an error means that no chronyd is running
     (void)::send(socket_.fd(), request.data(), request.size(), MSG_NOSIGNAL);
@@ -32,14 +32,14 @@ std::optional<ChronyTracking> ChronyQuery::latest(HostTime now) {
   return answer_;
 }
 
-// Used once, when the server starts; later answers are collected without waiting.
+// Called once, when the server starts. Later calls collect answers without waiting.
 void ChronyQuery::wait() const {
   constexpr int most_ms = 100;
   pollfd waiting{socket_.fd(), POLLIN, 0};
   (void)::poll(&waiting, 1, most_ms);
 }
 
-// Only the answer to the newest request counts; the others are discarded.
+// Only the answer to the newest request is used.
 void ChronyQuery::receive(HostTime now) {
   constexpr int most = 4;  // limit on answers read in one call
   std::array<std::uint8_t, 256> bytes{};

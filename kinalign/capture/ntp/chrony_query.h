@@ -10,15 +10,16 @@
 
 namespace kinalign {
 
-/// The socket is open all the time. A chronyd that starts later is found by the next request.
+/// The socket stays open. If chronyd starts later, the next request reaches it.
 class ChronyQuery {
  public:
   /// `port`: chronyd's cmdport on 127.0.0.1. Without a chronyd there is never an answer.
   explicit ChronyQuery(std::uint16_t port);
 
-  /// The last answer, if it is at most ten seconds old. Sends a new request every two seconds.
+  /// Returns the last answer if it is at most ten seconds old. Sends a new request every two
+  /// seconds.
   std::optional<ChronyTracking> latest(HostTime now);
-  /// Waits up to 100 ms for an answer to a request already sent.
+  /// Waits up to 100 ms for the answer to the last request.
   void wait() const;
 
  private:

@@ -24,8 +24,8 @@ Duration take_seconds(ByteReader& reader) {
   return std::chrono::ceil<Duration>(std::chrono::duration<double>(std::clamp(s, 0.0, most_s)));
 }
 
-// Seconds since 1970 as two halves of 64 bits. Values beyond the year 2255 are clamped, because
-// they would overflow in ns.
+// Seconds since 1970 as 64 bits, the upper half first. Values beyond the year 2255 are clamped,
+// because they would overflow in ns.
 Time take_time(ByteReader& reader) {
   const auto high = reader.take<std::uint32_t>();
   const auto low = reader.take<std::uint32_t>();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// chronyd's report about the clock that it disciplines: its stratum and its distance from the root,
-// which the kernel does not know. Version 6 of chrony's command protocol (candm.h of chrony 2 to
-// 4).
+// chronyd's report about the system clock: its stratum and its distance from the primary reference
+// clock. The kernel knows neither. The report uses version 6 of chrony's command protocol (candm.h
+// of chrony 2 to 4).
 #pragma once
 
 #include "kinalign/wire/ntp_packet.h"
@@ -14,20 +14,21 @@
 
 namespace kinalign {
 
-/// chronyd's own words for the fields of an NTP packet, in our units.
+/// The fields of chronyd's report. Their names are those of the NTP packet.
 struct ChronyTracking {
   NtpLeap leap = NtpLeap::unsynchronised;
   std::uint16_t stratum = ntp_stratum_unsynchronised;
   Duration root_delay{0}, root_dispersion{0};
-  Time reference{};  // time of the last update from its source
+  Time reference{};  // time of chronyd's last update from its source
 };
 
-/// Request and answer have the same size, so the service cannot be used for amplification.
+/// Size of the request and of the answer. They are equal, so the service can't be used for
+/// amplification.
 constexpr std::size_t chrony_tracking_size = 104;
 
 std::array<std::uint8_t, chrony_tracking_size> chrony_tracking_request(std::uint32_t sequence);
 
-/// Absent if the datagram is not an answer to the request with this number.
+/// Absent if the datagram is not an answer to the request with the number `sequence`.
 std::optional<ChronyTracking> decode_chrony_tracking(std::span<const std::uint8_t> datagram,
                                                      std::uint32_t sequence);
 

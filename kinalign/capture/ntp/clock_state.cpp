@@ -12,7 +12,7 @@ namespace kinalign {
 
 namespace {
 
-/// Leap 1 or 2 is announced on the day of the leap second, before it. The kernel keeps its status
+/// Leap 1 or 2 announces a leap second on the day before it happens. The kernel keeps its status
 /// bits after the leap second, so its state is checked first.
 NtpLeap leap_of(const KernelClock& kernel) {
   if (kernel.state == TIME_OOP || kernel.state == TIME_WAIT) return NtpLeap::none;
@@ -20,14 +20,14 @@ NtpLeap leap_of(const KernelClock& kernel) {
   return (kernel.status & STA_DEL) != 0 ? NtpLeap::remove : NtpLeap::none;
 }
 
-// A report with stratum 0 is not usable. One more than chronyd's stratum must still be a valid one.
+// A report with stratum 0 is not usable. chronyd's stratum plus one must still be a valid stratum.
 bool knows_its_distance(const std::optional<ChronyTracking>& chrony) {
   return chrony && chrony->leap != NtpLeap::unsynchronised && chrony->stratum > 0 &&
          chrony->stratum < ntp_stratum_unsynchronised - 1;
 }
 
-// Without a usable report of chronyd, the stratum is a guess and the kernel's maximum error stands
-// for the root dispersion.
+// If chronyd gives no usable report, the stratum is a guess, and the kernel's maximum error is the
+// root dispersion.
 void set_synchronised(NtpServerState& state, const KernelClock& kernel,
                       const std::optional<ChronyTracking>& chrony) {
   constexpr std::uint8_t unknown_stratum = 9;
@@ -57,7 +57,7 @@ std::optional<KernelClock> read_kernel_clock() {
                      std::chrono::microseconds(asked.maxerror)};
 }
 
-// A single reading is too short to be timed, so a thousand are timed together.
+// One reading is too short to be timed, so a thousand readings are timed together.
 std::int8_t measured_precision() {
   constexpr int readings = 1000;
   SystemClocks clocks;
@@ -65,7 +65,7 @@ std::int8_t measured_precision() {
   Time last = first;
   for (int i = 0; i < readings; ++i) last = clocks.utc();
   const double s = seconds(last - first);
-  // the limits exclude a step of the clock between the readings
+  // the limits guard against a clock step between the readings
   return static_cast<std::int8_t>(std::ceil(std::log2(std::clamp(s / readings, 1e-9, 1e-3))));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The quality of the system's clock, as an NTP server must state it, from the reports of the kernel
-// and of chronyd.
+// The quality of the system clock, as an NTP server must state it. It is computed from the reports
+// of the kernel and of chronyd.
 #pragma once
 
 #include "kinalign/capture/ntp/chrony_tracking.h"
@@ -14,35 +14,35 @@ namespace kinalign {
 struct KernelClock {
   int state = 0;          // TIME_OK, TIME_INS, ...
   unsigned status = 0;    // STA_UNSYNC, STA_INS, ...
-  Duration max_error{0};  // grows until the program that disciplines the clock sets it again
+  Duration max_error{0};  // grows until the program that sets the clock resets it
 };
 
-/// Returns whether a program disciplines the clock.
+/// Returns whether a program keeps the clock synchronised.
 bool is_synchronised(const std::optional<KernelClock>& kernel);
 
 /// Absent if the kernel does not answer.
 std::optional<KernelClock> read_kernel_clock();
 
-/// log2 of the seconds that one reading of CLOCK_REALTIME takes, rounded up (RFC 5905 section 7.3):
-/// -25 for 15 to 30 ns. It is rounded up, because readers add it to an error.
+/// log2 of the seconds that one reading of CLOCK_REALTIME takes (RFC 5905 section 7.3): -25 for 15
+/// to 30 ns. It is rounded up, because clients add it to their error bound.
 std::int8_t measured_precision();
 
 constexpr std::uint32_t local_reference_id = 0x7f7f0100;  // 127.127.1.0, as ntpd uses
 
 /// Choices of the user and facts about the machine that do not change while the server runs.
 struct ClockPolicy {
-  /// The stratum in answers while the system's clock is not synchronised; this machine is then the
-  /// lab's reference. If absent, answers say that the clock is not synchronised, and clients ignore
-  /// the server.
+  /// The stratum in answers while the system clock is not synchronised. This machine is then the
+  /// time reference of the lab. If absent, answers say that the clock is not synchronised, and
+  /// clients ignore the server.
   std::optional<std::uint8_t> local_stratum;
-  /// log2 s
+  /// log2 of seconds
   std::int8_t precision = -20;
 };
 
-/// The state to serve. The kernel says whether the clock is synchronised. chronyd gives the
-/// distance from the root, and the stratum is one more than chronyd's. Without chronyd the stratum
-/// is 9, since the kernel does not know it. The local stratum applies only while no program
-/// disciplines the clock.
+/// Returns the state for the answers. The kernel says whether the clock is synchronised. chronyd
+/// gives the distance from the primary clock; the stratum is one more than chronyd's. Without
+/// chronyd the stratum is 9, since the kernel does not know it. The local stratum applies only
+/// while the clock is not synchronised.
 NtpServerState server_state(const std::optional<KernelClock>& kernel,
                             const std::optional<ChronyTracking>& chrony, const ClockPolicy& policy,
                             Time now);

@@ -5,7 +5,8 @@
 
 namespace kinalign {
 
-// A small step back between arrival and answer must not give a negative time in the server.
+// After a small backward step of the clock, `now` may be earlier than `received`. The answer must
+// not state that it was sent before the request arrived.
 std::optional<Time> transmit_stamp(Time received, Time now) {
   constexpr Duration most = std::chrono::seconds(1);
   if (now > received + most || now < received - most) return std::nullopt;
@@ -36,7 +37,7 @@ NtpPacket ntp_answer(const NtpPacket& request, Time received, Time transmit,
 
 NtpPacket ntp_kiss_rate(const NtpPacket& request, Time received, Time transmit,
                         const NtpServerState& state) {
-  // log2 s: 2 s, the rate that the limit allows (rate_limit.h)
+  // log2 of seconds: 2 s, the interval that the rate limit allows (rate_limit.h)
   constexpr std::int8_t least_poll = 1;
   NtpPacket kiss = ntp_answer(request, received, transmit, state);
   // A kiss has stratum 0, and its code stands in the field of the reference.

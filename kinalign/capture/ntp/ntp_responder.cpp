@@ -32,7 +32,7 @@ NtpOutcome outcome_of(NtpRefusal refusal) {
   return NtpOutcome::wrong_trailer;
 }
 
-/// Judges a datagram by its addresses alone, before any byte is read.
+/// Judges a datagram by its addresses alone, before its bytes are read.
 NtpOutcome outcome_of_way(const NtpAsked& asked) {
   if (!asked.unicast) return NtpOutcome::not_unicast;
   if (asked.from_port == 0) return NtpOutcome::from_port_0;
@@ -40,7 +40,7 @@ NtpOutcome outcome_of_way(const NtpAsked& asked) {
   return itself ? NtpOutcome::from_itself : NtpOutcome::answered;
 }
 
-// A node that is set to the wrong port gets an outcome of its own, so the user can see the mistake.
+// A node that sends to the wrong port gets its own outcome, so the user can see the mistake.
 bool is_from_node(std::span<const std::uint8_t> bytes) {
   Envelope envelope;
   return open_envelope(bytes, envelope) == NodeRefusal::none;
@@ -70,7 +70,7 @@ NtpOutcome NtpResponder::respond(const NtpAsked& asked, Time now, HostTime host_
   if (asked.cut) return NtpOutcome::wrong_trailer;
   const RateLimit::Verdict verdict = limit(asked.from, host_now);
   if (verdict == RateLimit::Verdict::drop) return NtpOutcome::limited;
-  // After the rate limit: a step of the clock is no reason to answer more often.
+  // The stamp is made after the rate limit, because a clock step is no reason to answer more often.
   const auto transmit = transmit_stamp(asked.received, now);
   if (!transmit) return NtpOutcome::clock_stepped;
   const bool kiss = verdict == RateLimit::Verdict::kiss;

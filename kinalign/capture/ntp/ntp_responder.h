@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decides about each datagram of the NTP port: answered, limited or refused, with the reason. It
-// uses no socket and no clock, so every rule can be tested.
+// Decides about each datagram of the NTP port: answer, limit or refuse, with the reason. This code
+// uses no socket and no clock, so tests can reach every rule.
 #pragma once
 
 #include "kinalign/capture/net/counts_by.h"
@@ -16,12 +16,12 @@
 
 namespace kinalign {
 
-/// The outcome of a datagram; each has exactly one.
+/// The outcome for a datagram. Each datagram has exactly one outcome.
 enum class NtpOutcome : std::uint8_t {
   answered,
   limited,    // the address asks too often; no answer
-  kissed,     // the same, but answered with the kiss RATE; one of 16 such requests
-  too_short,  // this and the next three: refusals of decode_request
+  kissed,     // the address asks too often; this request got the kiss RATE (one of 16)
+  too_short,  // too_short to wrong_trailer are refusals of decode_request
   wrong_version,
   wrong_mode,
   wrong_trailer,
@@ -37,12 +37,11 @@ constexpr std::size_t ntp_outcomes = 13;
 /// The same word as in --json: "wrong_version".
 std::string_view name_of(NtpOutcome outcome);
 
-/// Datagrams by outcome.
+/// Number of datagrams for each outcome.
 using NtpCounts = CountsBy<NtpOutcome, ntp_outcomes>;
 
-/// A received datagram.
-/// Everything that the decision depends on. `to` and `to_port` are the server's own address and
-/// port.
+/// A received datagram, with everything on which the decision depends. `to` and `to_port` are the
+/// address and port of the server.
 struct NtpAsked {
   std::span<const std::uint8_t> bytes;
   bool cut = false;  // the datagram was longer than `bytes`
@@ -54,16 +53,16 @@ struct NtpAsked {
   Time received{};
 };
 
-/// The rate limit is the only state that requests can change; it has a fixed size.
+/// Requests change no state except the rate limit, which has a fixed size.
 class NtpResponder {
  public:
   /// `key`: secret, random in each run. `exempt`: networks whose requests are not limited.
   NtpResponder(const SipHashKey& key, std::vector<AddressBlock> exempt)
       : key_(key), exempt_(std::move(exempt)) {}
 
-  /// Fills `answer` if the outcome is answered or kissed. `now` becomes the transmit stamp, so the
-  /// answer must be sent at once. `host_now` is the same moment on the host's axis, for the rate
-  /// limit.
+  /// Fills `answer` if the outcome is answered or kissed. `now` becomes the transmit stamp, so send
+  /// the answer at once. `host_now` is the same moment on the host's time axis; the rate limit uses
+  /// it.
   NtpOutcome respond(const NtpAsked& asked, Time now, HostTime host_now,
                      std::span<std::uint8_t, ntp_packet_size> answer);
 

@@ -17,7 +17,7 @@ constexpr int batches_in_turn = 16;  // batches of one socket before other socke
 Time now_utc() { return SystemClocks{}.utc(); }
 HostTime now_host() { return SystemClocks{}.raw(); }
 
-// Without a stamp of the kernel, the moment of reading stands for the arrival.
+// If the kernel gave no stamp, the time of reading is used as the arrival.
 NtpAsked asked_of(const Datagram& datagram, std::uint16_t port, Time now) {
   return {.bytes = datagram.bytes,
           .cut = datagram.cut,
@@ -41,8 +41,8 @@ TimeServer::TimeServer(const TimeServerOptions& options, std::vector<UdpSocket> 
       sockets_(std::move(sockets)),
       responder_(options.key, options.exempt),
       batch_(std::make_unique<DatagramBatch>()) {
-  // The first answers should state chronyd's distance too, so the server waits a little for its
-  // report.
+  // The first answers should already contain chronyd's distance, so the server waits up to 100 ms
+  // for its report.
   if (is_synchronised(read_kernel_clock())) {
     chrony_.latest(now_host());
     chrony_.wait();
@@ -52,12 +52,12 @@ TimeServer::TimeServer(const TimeServerOptions& options, std::vector<UdpSocket> 
 
 void TimeServer::look_at_clock() {
   const auto kernel = read_kernel_clock();
-  // An unsynchronised clock has no distance that chronyd could state.
+  // chronyd states a distance only for a synchronised clock.
   const auto chrony = is_synchronised(kernel) ? chrony_.latest(now_host()) : std::nullopt;
   responder_.set_state(server_state(kernel, chrony, policy_, now_utc()));
 }
 
-// The state of the clock is read once per tick, not once per request.
+// The state of the clock is read once per tick, because requests may arrive more often.
 void TimeServer::serve(const std::function<bool()>& go_on, NodeReceiver* nodes) {
   nodes_ = nodes;
   while (go_on()) {
@@ -68,7 +68,7 @@ void TimeServer::serve(const std::function<bool()>& go_on, NodeReceiver* nodes) 
   nodes_ = nullptr;
 }
 
-// Every ready socket is read before the next poll; the nodes' port comes first.
+// Every readable socket is read before the next poll. The nodes' port is read first.
 void TimeServer::serve_until(HostTime end) {
   std::vector<pollfd> waiting;
   if (nodes_ != nullptr) {
@@ -96,9 +96,9 @@ void TimeServer::drain(const UdpSocket& socket) {
   }
 }
 
-// The outcome of a datagram is counted after sending, since the system may not accept its answer.
+// An outcome is counted after sending, since the system may not accept the answer.
 void TimeServer::answer(const UdpSocket& socket, std::size_t datagrams) {
-  // One reading for the rate limit of the whole batch is enough.
+  // One clock reading suffices for the rate limit of the whole batch.
   const HostTime host_now = now_host();
   std::array<NtpOutcome, DatagramBatch::most> outcomes{};
   for (std::size_t i = 0; i < datagrams; ++i) {

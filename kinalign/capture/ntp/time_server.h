@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The NTP server: sockets around an NtpResponder. It uses one thread, which blocks only when
-// nothing is waiting.
+// The NTP server: the sockets and an NtpResponder. One thread serves all sockets. It waits only
+// while no datagram has arrived.
 #pragma once
 
 #include "kinalign/capture/net/datagram_batch.h"
@@ -29,13 +29,14 @@ struct TimeServerOptions {
   std::uint16_t chrony_port = 323;            // command port of this host's chronyd
 };
 
-/// It answers, and never sets a clock.
+/// The server answers requests. It never sets a clock.
 class TimeServer {
  public:
   static Result<TimeServer> open(const TimeServerOptions& options);
 
   /// Serves until `go_on` returns false. `go_on` is called four times a second, and immediately
-  /// after a signal. If `nodes` is given, its port is served too, and first.
+  /// after a signal. If `nodes` is given, the same thread serves the nodes' port, before the NTP
+  /// sockets.
   void serve(const std::function<bool()>& go_on, NodeReceiver* nodes = nullptr);
 
   const std::vector<UdpSocket>& sockets() const { return sockets_; }

@@ -14,7 +14,7 @@ namespace kinalign {
 
 namespace {
 
-// Free space for this user: f_bavail leaves out what is reserved for root.
+// Free space for this user. f_bavail excludes the space reserved for root.
 std::optional<std::uint64_t> free_bytes(const std::string& path) {
   struct statvfs status {};
   const std::string in = folder(path).empty() ? "." : std::string(folder(path));
@@ -40,7 +40,7 @@ DiskThread::~DiskThread() {
   if (syncer_.joinable()) syncer_.join();
 }
 
-// The standard library throws if the system has no thread. The exception ends here.
+// The standard library throws if the system has no thread. The exception is caught here.
 Result<void> DiskThread::start() {
   if (writer_.joinable()) return {};
   try {
@@ -51,7 +51,7 @@ Result<void> DiskThread::start() {
     Error why{"", 0, "a thread for the disk", fault.code().message()};
     {
       const std::lock_guard lock(mutex_);
-      done_ = true;  // for a syncer_ that started while writer_ did not
+      done_ = true;  // ends syncer_ if only syncer_ started
     }
     asked_.notify_one();
     if (syncer_.joinable()) syncer_.join();
@@ -65,8 +65,8 @@ Result<void> DiskThread::start() {
 void DiskThread::push(McapChunkContent chunk, std::uint64_t room) {
   {
     const std::lock_guard lock(mutex_);
-    // Both count: chunks in the queue, and chunks that the disk keeps until a sync has confirmed
-    // them.
+    // The limit applies to two kinds of chunks: those in the queue, and those that the disk keeps
+    // until a sync has confirmed them.
     if (status_.waiting_bytes + queue_bytes_ + chunk.size() > room) {
       status_.dropped += messages_in(chunk);
       return;
@@ -85,7 +85,7 @@ void DiskThread::finish() {
   written_.notify_one();
 }
 
-// Without a writing thread nobody else would drop the chunks.
+// If no writing thread runs, this function drops the chunks itself.
 void DiskThread::give_up() {
   {
     const std::lock_guard lock(mutex_);
@@ -107,7 +107,7 @@ std::vector<PartFailure> DiskThread::take_failures() {
   return std::exchange(failures_, {});
 }
 
-/// Updates the status after each step on the disk. The lock must be held.
+/// Updates the status after each step on the disk. The caller must hold the lock.
 void DiskThread::publish(const Result<void>& result) {
   status_.paths = disk_->paths();
   status_.bytes = disk_->bytes();
@@ -124,7 +124,7 @@ void DiskThread::drop_all() {
   done_ = status_.finished = true;
 }
 
-/// Opens the file. Retries every second until give_up(). Returns whether there is a file.
+/// Opens the file. Retries every second until give_up(). Returns whether a file is open.
 bool DiskThread::begin() {
   while (!disk_ && !done_) {
     Result<RecordingDisk> opened = open_();
@@ -142,7 +142,7 @@ bool DiskThread::begin() {
       written_.wait_for(lock, std::chrono::seconds(1), [this] { return giving_up_; });
     }
   }
-  // Frees what the function owns; it is not needed any more.
+  // Releases the data that the function owns.
   open_ = nullptr;
   asked_.notify_one();
   return disk_.has_value();
@@ -152,7 +152,7 @@ void DiskThread::write() {
   if (!begin()) return;
   std::unique_lock lock(mutex_);
   while (!done_) {
-    // Also woken by the end, so that the file is finished when nothing more comes.
+    // The end wakes this thread too, so that the file is finished although no chunk arrives.
     written_.wait(lock, [this] { return !queue_.empty() || synced_ || finishing_; });
     work_on(lock);
     if (!done_ && !syncing_) due_ = disk_->unsynced();
@@ -185,7 +185,7 @@ void DiskThread::work_on(std::unique_lock<std::mutex>& lock) {
     return;
   }
   lock.lock();
-  // Only now: until the disk has the chunk, its bytes count as queued.
+  // Subtracted only now, because a chunk counts as queued until the disk has it.
   queue_bytes_ -= taken;
   publish(result);
 }
@@ -199,15 +199,15 @@ void DiskThread::work_on_end(std::unique_lock<std::mutex>& lock) {
   const Result<void> result = disk_->finish(end);
   lock.lock();
   publish(result);
-  // After the last try the recording is finished in any case.
+  // After the last attempt the recording is finished, with or without success.
   done_ = status_.finished = result || last;
   if (!result && last) status_.dropped += disk_->unwritten();
   if (!done_) written_.wait_for(lock, std::chrono::seconds(1), [this] { return giving_up_; });
 }
 
-/// Asks for the free space of the disk. The syncing thread asks, because the question blocks if a
-/// network disk is gone. It is not asked at the end, because the program waits for this thread
-/// then.
+/// Updates the free space of the disk. The syncing thread does this, because the call blocks if a
+/// network disk is unreachable. The call is omitted at the end, because the program then waits for
+/// this thread.
 void DiskThread::look_at_room(std::unique_lock<std::mutex>& lock) {
   if (status_.paths.empty() || finishing_) return;
   const std::string path = status_.paths.back();
@@ -217,8 +217,8 @@ void DiskThread::look_at_room(std::unique_lock<std::mutex>& lock) {
   status_.free_bytes = free;
 }
 
-/// Syncs the file in a loop. After a failed sync it waits, each time twice as long, because each
-/// failure starts a new file.
+/// Syncs the file repeatedly. Each failed sync begins a new file, so the pause after a failure
+/// doubles each time.
 void DiskThread::sync() {
   using Clock = std::chrono::steady_clock;
   constexpr Clock::duration shortest = std::chrono::seconds(1), longest = std::chrono::seconds(32);

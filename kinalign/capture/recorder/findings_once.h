@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Findings about the senders to a port. Each finding is reported once per host, because a faulty
-// sender repeats its fault with every message.
+// Findings about the senders to a port. A faulty sender repeats its fault with every message, so
+// each finding is reported once per host.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -12,10 +12,11 @@
 
 namespace kinalign {
 
-/// The port is part of no key: a host that reconnects from another port is not reported again.
+/// The key does not contain the port, so a host that reconnects from another port is not reported
+/// again.
 class FindingsOnce {
  public:
-  // findings; the number of unknown senders' addresses has no limit
+  // findings; without a limit, each new sender address would use memory
   static constexpr std::size_t most = 256;
 
   void add(const std::string& host, Finding finding) {
@@ -23,7 +24,7 @@ class FindingsOnce {
     const bool fresh = reported_.insert(host + finding.what.expected + finding.meaning).second;
     if (fresh) fresh_.push_back(std::move(finding));
   }
-  /// Findings since the previous call.
+  /// Findings since the previous call of this function.
   Findings take() { return std::exchange(fresh_, {}); }
 
  private:

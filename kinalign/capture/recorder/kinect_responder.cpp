@@ -10,8 +10,8 @@ namespace kinalign {
 
 namespace {
 
-// If the table is full, a new session replaces the one that was silent longest, if it was silent
-// for more than this.
+// If the table is full, a new session replaces the session that was silent longest. That session
+// must have been silent for at least this time.
 constexpr Duration replaced_after = std::chrono::minutes(1);
 
 }  // namespace
@@ -22,14 +22,14 @@ std::optional<Exchange> KinectResponder::receive(const KinectPing& ping, const H
   Session* session = session_of(ping, from, h_rx);
   if (session == nullptr) return std::nullopt;
   session->last_ping = h_rx;
-  // A ping above the pace is still a valid exchange; it only gets no pong.
+  // A ping that exceeds the pace is still a valid exchange, but gets no pong.
   if (session->pace.ask(h_rx)) asked_by_ = session;
   asked_ = ping.origin;
   asked_at_ = h_rx;
   return exchange_of(ping, h_rx, take_echo(*session, ping));
 }
 
-/// Finds or begins the session of a ping. nullptr: refused.
+/// Finds or begins the session of a ping. Returns nullptr if the ping is refused.
 KinectResponder::Session* KinectResponder::session_of(const KinectPing& ping,
                                                       const HostAddress& from, HostTime now) {
   auto place = std::find_if(sessions_.begin(), sessions_.end(), [&](const Session& one) {
@@ -53,7 +53,7 @@ KinectResponder::Session* KinectResponder::session_of(const KinectPing& ping,
   return &*place;
 }
 
-/// The time when the echoed pong was sent. Absent if the ping has no valid echo.
+/// Returns the time when the echoed pong was sent. Absent if the ping has no valid echo.
 std::optional<HostTime> KinectResponder::take_echo(Session& session, const KinectPing& ping) {
   if (!ping.echo || ping.echo->received_ticks > ping.sent_ticks) return std::nullopt;
   GivenAnswer answer;
@@ -61,13 +61,13 @@ std::optional<HostTime> KinectResponder::take_echo(Session& session, const Kinec
   return found == EchoVerdict::taken ? std::optional(answer.t3) : std::nullopt;
 }
 
-// Every pong is stored, because only a stored pong can be echoed.
+// Every pong is stored, because an echo is checked against the stored pongs.
 std::optional<KinectPong> KinectResponder::answer(HostTime h_tx) {
   Session* session = std::exchange(asked_by_, nullptr);
   if (session == nullptr) return std::nullopt;
   std::array<std::uint8_t, sizeof nonces_> number{};
   std::memcpy(number.data(), &++nonces_, number.size());
-  // A counter hashed with the secret, so that nobody can guess a nonce.
+  // The nonce is a counter hashed with the secret, so it can't be guessed.
   const auto nonce = static_cast<std::uint32_t>(siphash_2_4(secret_, number));
   const std::uint32_t sequence = session->next_pong++;
   session->answers.add({sequence, nonce, asked_at_, h_tx});

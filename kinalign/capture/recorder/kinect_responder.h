@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The host's side of a Kinect sender's pings (docs/formats/kinect_stream.md). It decides which
-// pings are answered and extracts what they say about the sender's clock. It uses no socket and no
-// clock, and its memory is fixed. Time is an argument.
+// pings get a pong and computes the clock exchange of each ping. It uses no socket and no clock,
+// and its memory is fixed. The caller passes the time.
 #pragma once
 
 #include "kinalign/capture/net/host_address.h"
@@ -21,19 +21,19 @@ class KinectResponder {
  public:
   static constexpr std::size_t most_sessions = 32;
 
-  /// `secret`: random in each run; nonces and the hash keys of unknown senders are made with it.
+  /// `secret`: random in each run; used for nonces and for hashes of unknown senders.
   explicit KinectResponder(const SipHashKey& secret) : secret_(secret) {}
 
-  /// Takes a ping. Call in the order of arrival. Absent: the ping is refused, because there are too
-  /// many sessions or its address begins sessions too often.
+  /// Handles a ping. Call in the order of arrival. Absent: the ping is refused, because there are
+  /// too many sessions or its address begins sessions too often.
   std::optional<Exchange> receive(const KinectPing& ping, const HostAddress& from, HostTime h_rx);
-  /// The pong to the previous ping. Absent: none is due. `h_tx` must be read just before this call,
-  /// and the pong must be sent at once.
+  /// Returns the pong for the previous ping, or nothing if no pong is to be sent. `h_tx` must be
+  /// read just before this call, and the pong must be sent at once.
   std::optional<KinectPong> answer(HostTime h_tx);
 
  private:
-  /// One run of one sensor's sender. Its table of pongs makes old pings useless: an echo counts
-  /// only once and only of this run.
+  /// One run of one sensor's sender. An echo is valid only if it names a pong in `answers`, and
+  /// only once. Replayed pings are therefore useless.
   struct Session {
     std::uint32_t sensor = 0, session = 0;
     HostTime last_ping{};
@@ -48,7 +48,7 @@ class KinectResponder {
   std::vector<Session> sessions_;
   RateLimit unknown_senders_;
   std::uint64_t nonces_ = 0;
-  Session* asked_by_ = nullptr;  // session of the previous ping; nullptr: it is not answered
+  Session* asked_by_ = nullptr;  // session of the previous ping; nullptr: that ping gets no pong
   KinectOrigin asked_;
   HostTime asked_at_{};
 };

@@ -20,23 +20,23 @@ namespace kinalign {
 struct StreamStatus {
   std::string topic, stream, sender;
   std::string node, place;  // nodes only: the id, and the place on the body from lab.toml
-  // of the present or last take; before the first take, since the first message
+  // counts of the present or last take; before the first take, since the first message
   SenderCounts counts;
-  std::uint64_t samples = 0;            // nodes only: a frame has several samples
-  double rate_hz = 0.0;                 // of the last second: samples, or frames, or messages
-  HostTime last_arrival{};              // of a message
+  std::uint64_t samples = 0;            // nodes only, because a node's frame has several samples
+  double rate_hz = 0.0;                 // samples (else frames, else messages) per second
+  HostTime last_arrival{};              // arrival of the newest message
   std::optional<double> battery_volts;  // absent if the device does not send it
   std::optional<SenderClock> clock;     // senders of a Kinect only
 };
 
-/// A lab at one moment.
+/// The state of a lab at one moment.
 struct LabStatus {
-  HostTime now{}, begun{};  // begun: when its ports were opened
+  HostTime now{}, begun{};  // begun: when the ports were opened
   std::vector<StreamStatus> streams;
   std::vector<NodeStatus> nodes;
   std::vector<std::pair<std::string, PortCounts>> ports{};  // by the device's name
   std::map<std::string, std::uint16_t> port_numbers{};      // by the device's name
-  bool ended = false;  // the status of a take at its end; streams without data are not in it
+  bool ended = false;  // this is the status at the end of a take; it omits streams without data
 };
 
 }  // namespace kinalign

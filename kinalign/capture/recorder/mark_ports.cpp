@@ -18,7 +18,7 @@ const char* port_name(MarkPort::Form form) {
   return form == MarkPort::Form::call ? "marks" : "trigger";
 }
 
-/// A datagram that does not claim to be a mark may come from any program, so it is only a note.
+/// A datagram that is no mark at all may come from any program, so it is only a note.
 Severity severity_of(MarkCallRefusal refusal) {
   using enum MarkCallRefusal;
   const bool anybodys = refusal == too_long || refusal == bad_json || refusal == wrong_schema;
@@ -42,7 +42,7 @@ MarkPort::MarkPort(Form form, UdpPieces pieces)
       pieces_(std::move(pieces)),
       repeats_(form == Form::call ? call_repeats : trigger_repeats) {}
 
-// A mark is stamped by its arrival at this port.
+// The time of a mark is its arrival at this port.
 void MarkPort::drain(HostAxis& axis, const TakeMark& take) {
   pieces_.drain(axis, [&](const Piece& piece) { take_piece(piece, take); });
 }
@@ -54,7 +54,7 @@ std::string MarkPort::sender_of(const Piece& piece) const {
   return endpoint_text(to_string(sender.host), sender.port);
 }
 
-/// Counts a refused datagram by its cause, and reports it.
+/// Counts a refused datagram by its cause and reports it.
 void MarkPort::refuse(const Piece& piece, Severity severity, const std::string& cause,
                       const char* expected) {
   ++counts_.refused[cause];
@@ -66,7 +66,7 @@ void MarkPort::refuse(const Piece& piece, Severity severity, const std::string& 
                  "docs/formats/marks.md shows the datagrams that this port accepts"});
 }
 
-/// Decodes one mark. A refused call is answered with the cause, if an answer is allowed.
+/// Decodes one mark. If the call is refused and an answer is allowed, the cause is sent back.
 bool MarkPort::decode(const Piece& piece, Mark& mark) {
   if (form_ == Form::call) {
     const MarkCallRefusal refusal = decode_mark_call(piece.bytes, mark);
@@ -92,8 +92,8 @@ PortCounts MarkPort::port_counts() const {
   return counts;
 }
 
-// A repeated mark is answered again, because its sender may have missed the first answer. It is
-// passed on only once.
+// A repeated mark is answered again, because its sender may have missed the first answer. The mark
+// is passed on only once.
 void MarkPort::take_piece(const Piece& piece, const TakeMark& take) {
   RecordedMark received;
   if (!decode(piece, received.mark)) return;

@@ -13,14 +13,14 @@ namespace {
 
 constexpr std::size_t most_nodes = 256;  // each node uses two channels
 
-/// Without keys anyone can send datagrams with any number of node ids. Nodes that were not admitted
-/// get no channel, because otherwise they could use up all channels.
+/// Without keys, any sender can use any number of node ids. Nodes that were not admitted get no
+/// channel, because such senders could use up all channels.
 bool is_limited(NodeVerdict verdict) {
   return verdict == NodeVerdict::limited || verdict == NodeVerdict::no_room ||
          verdict == NodeVerdict::wrong_counter || verdict == NodeVerdict::unknown_answer;
 }
 
-/// Datagrams that the kernel's filter drops if the system supports it.
+/// Number of datagrams that the kernel's filter would drop, if the system had one.
 std::uint64_t no_frames(const NodeCounts& counts) {
   return counts.refusals[NodeRefusal::too_short] + counts.refusals[NodeRefusal::bad_magic] +
          counts.refusals[NodeRefusal::wrong_length];
@@ -52,7 +52,7 @@ RecordedNodes::RecordedNodes(DeviceOptions device, bool keyed, NodeReceiver rece
   });
 }
 
-// The raw bytes are recorded for every node with a channel, whatever the verdict.
+// The raw bytes are recorded for every node that has a channel.
 void RecordedNodes::take(const NodeArrival& arrival, const NodeMessage& message) {
   const bool has_room = nodes_.size() < most_nodes && (keyed_ || !is_limited(message.verdict));
   if (!has_room && !nodes_.contains(message.node_id)) {
@@ -60,7 +60,7 @@ void RecordedNodes::take(const NodeArrival& arrival, const NodeMessage& message)
     return;
   }
   Node& node = node_of(message.node_id, arrival.from);
-  // The exchange comes before the raw datagram. Both have the same arrival.
+  // The exchange is recorded before the raw datagram. Both have the same arrival.
   std::optional<std::uint64_t> device_ns;
   if (message.exchange) {
     device_ns = static_cast<std::uint64_t>(message.exchange->n_tx.time_since_epoch().count());
@@ -80,7 +80,7 @@ void RecordedNodes::take(const NodeArrival& arrival, const NodeMessage& message)
 RecordedNodes::Node& RecordedNodes::node_of(std::uint32_t id, const NodeAddress& from) {
   const auto found = nodes_.find(id);
   if (found != nodes_.end()) return found->second;
-  // The topic has the node's id. Its place on the body may be absent in lab.toml.
+  // The topic contains the node's id. lab.toml may give no place for the node.
   const std::string number = std::to_string(id);
   const auto place = device_.nodes.find(number);
   const RawChannel raw{device_.name,
@@ -97,8 +97,8 @@ RecordedNodes::Node& RecordedNodes::node_of(std::uint32_t id, const NodeAddress&
       .first->second;
 }
 
-/// Counts a datagram by its verdict. A held datagram counts only as a message: it may belong to the
-/// node's next session, or be a recording played back.
+/// Counts a datagram by its verdict. A held datagram counts only as a message. It may belong to the
+/// node's next session, or it may be a replayed recording.
 void RecordedNodes::judge(Node& node, const NodeMessage& message) {
   SenderCounts& counts = node.raw.status.counts;
   switch (message.verdict) {
@@ -121,7 +121,7 @@ void RecordedNodes::judge(Node& node, const NodeMessage& message) {
   node.raw.status.samples += message.readings.size();
   if (!message.exchange) return;
   const BootKey before = std::exchange(node.boot, message.exchange->boot);
-  // The first frame is no restart, although the boot differs from the initial 0.
+  // The first frame is not a restart, although its boot differs from the initial 0.
   if (before != node.boot && counts.frames > 1) ++counts.order.restarts;
   if (message.late) ++counts.order.late;
 }
@@ -131,10 +131,11 @@ void RecordedNodes::look(HostTime now) {
   for (auto& [id, node] : nodes_) node.raw.take_rate(now);
 }
 
-/// Reports datagrams that are not frames of nodes, for example another device's. They are not
-/// recorded, so the user must learn of it during the take. Lost frames are subtracted; a frame
-/// dropped for lack of buffer space counts as lost only when the next frame of its node has
-/// arrived. Therefore the number of dropped datagrams of one second ago is used.
+/// Reports datagrams that are not frames of nodes, for example those of another device. They are
+/// not recorded, so the user must be told during the take.
+///
+/// Frames lost at a full buffer are subtracted. Such a loss is noticed only when the node's next
+/// frame arrives. Therefore the number of dropped datagrams of one second ago is used.
 void RecordedNodes::find_foreign() {
   PortCounts counts = this->counts();
   counts.dropped = std::exchange(dropped_, counts.dropped);
@@ -150,15 +151,15 @@ void RecordedNodes::find_foreign() {
                  "check the port and the protocol that each device sends to"});
 }
 
-// A node may have several streams of the receiver. Losses of earlier sessions are kept in
-// `before`.
+// One node may have several streams of the receiver. `before` contains the losses of earlier
+// sessions.
 void RecordedNodes::count_lost() {
   for (const NodeStatus& status : receiver_.status()) {
     const auto found = nodes_.find(status.node_id);
     if (found == nodes_.end()) continue;
     Lost& lost = found->second.lost[status.stream];
-    // The receiver counts losses of the present session only, so the sum so far is kept when a new
-    // session begins.
+    // The receiver counts only the losses of the present session. When a new session begins, the
+    // losses so far are added to `before`.
     if (std::exchange(lost.sessions, status.sessions) != status.sessions) {
       lost.before += lost.present;
     }
@@ -168,14 +169,14 @@ void RecordedNodes::count_lost() {
   }
   for (auto& [id, node] : nodes_) {
     std::uint64_t& lost = node.raw.status.counts.order.lost;
-    // Added up anew each time: losses may shrink when late frames arrive.
+    // The sum is computed anew each time, because losses may shrink when late frames arrive.
     lost = 0;
     for (const auto& [stream, of_one] : node.lost) lost += of_one.before + of_one.present;
   }
 }
 
-// Datagrams that the filter in the kernel drops do not arrive where the system has such a filter.
-// They count as dropped, with and without it.
+// If the system has the kernel filter, foreign datagrams do not arrive. They count as dropped with
+// or without the filter.
 PortCounts RecordedNodes::counts() const {
   const NodeCounts& counts = receiver_.counts();
   PortCounts out;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nodes' port during recording. Every datagram that passed the checks of port and key is
-// recorded as received, whatever the verdict. The clock exchanges of accepted datagrams are
+// The nodes' port during recording. Each datagram that passed the checks of port and key is
+// recorded as received, even if it is not accepted. The clock exchanges of accepted datagrams are
 // recorded too.
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace kinalign {
 
-/// Not movable: the receiver calls back into it.
+/// Not movable, because the receiver calls this object.
 class RecordedNodes {
  public:
   /// `clocks` and `recorder` must outlive the object.
@@ -28,7 +28,7 @@ class RecordedNodes {
   RecordedNodes& operator=(const RecordedNodes&) = delete;
   ~RecordedNodes() = default;
 
-  /// These functions are like those of RecordedPort.
+  /// The public functions below are like those of RecordedPort.
   void drain() { receiver_.drain(); }
 
   NodeReceiver& receiver() { return receiver_; }
@@ -38,22 +38,22 @@ class RecordedNodes {
   const DeviceOptions& device() const { return device_; }
   std::uint16_t port() const { return receiver_.sockets().front().port(); }
   PortCounts counts() const;
-  /// Call once a second. Checks whether other devices than nodes send to this port.
+  /// Call once a second. Checks whether devices other than nodes send to this port.
   void find_foreign();
   Findings take_findings() { return findings_.take(); }
   void add_streams(std::vector<StreamStatus>& all);
 
  private:
-  /// Frames that one stream of the receiver lost: in its present session, and in all earlier ones.
+  /// Lost frames of one stream of the receiver: in its present session and in all earlier sessions.
   struct Lost {
     std::uint64_t sessions = 0, present = 0, before = 0;
   };
-  /// One node id. Two nodes with the same id share its two channels.
+  /// One node id. Two nodes with the same id share two channels.
   struct Node {
     RecordedSource raw;
     std::uint16_t exchanges = 0;  // channel of the clock exchanges
     BootKey boot = 0;             // session of the newest frame
-    // By stream of the receiver.
+    // Losses by the receiver's stream number.
     std::map<std::size_t, Lost> lost{};
   };
 
@@ -61,8 +61,8 @@ class RecordedNodes {
   /// Called by the receiver for each datagram that passed the checks of port and key.
   void take(const NodeArrival& arrival, const NodeMessage& message);
   Node& node_of(std::uint32_t id, const NodeAddress& from);
-  /// `judge` counts by verdict, at once. `count_lost` reads losses from the receiver, when counts
-  /// are looked at.
+  /// `judge` counts a datagram by its verdict when it arrives. `count_lost` reads the losses from
+  /// the receiver when the status is needed.
   static void judge(Node& node, const NodeMessage& message);
   void count_lost();
 
@@ -72,7 +72,7 @@ class RecordedNodes {
   Recorder& recorder_;
   std::map<std::uint32_t, Node> nodes_;
   std::uint64_t bytes_ = 0;
-  std::uint64_t without_channel_ = 0;  // datagrams of nodes that got no channel
+  std::uint64_t without_channel_ = 0;  // datagrams of nodes without a channel
   std::uint64_t dropped_ = 0;          // dropped datagrams at the last call of find_foreign()
   FindingsOnce findings_;
 };

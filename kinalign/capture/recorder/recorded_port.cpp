@@ -41,7 +41,7 @@ Result<RecordedPort::Pieces> RecordedPort::open_pieces(const DeviceOptions& devi
   return Pieces(KA_TRY(TcpPieces::listen(device.address, port)));
 }
 
-// The answering part exists only for the protocol that needs it.
+// A responder exists only if the protocol needs it.
 RecordedPort::RecordedPort(DeviceOptions device, const ProtocolRow& protocol, Pieces pieces,
                            const SipHashKey& secret)
     : device_(std::move(device)), protocol_(&protocol), pieces_(std::move(pieces)) {
@@ -52,7 +52,7 @@ RecordedPort::RecordedPort(DeviceOptions device, const ProtocolRow& protocol, Pi
     case Answers::tracker_handshakes:
       slime_responder_ = std::make_unique<SlimeResponder>(secret);
       break;
-    case Answers::node_requests:  // RecordedNodes answers these
+    case Answers::node_requests:  // RecordedNodes answers node requests
     case Answers::none:
       break;
   }
@@ -67,8 +67,8 @@ void RecordedPort::drain(HostAxis& axis, Recorder& recorder) {
   std::visit([&](auto& pieces) { pieces.drain(axis, to); }, pieces_);
 }
 
-/// Answers are sent before anything is recorded, because work in between would delay one direction
-/// only.
+/// Answers are sent before anything is recorded. Work before an answer would increase the delay in
+/// one direction only.
 void RecordedPort::take(const Piece& piece, HostAxis& axis, Recorder& recorder) {
   Source& source = source_of(piece, recorder);
   source.watch.feed(piece.bytes, piece.arrival, newest_frames_);
@@ -77,7 +77,7 @@ void RecordedPort::take(const Piece& piece, HostAxis& axis, Recorder& recorder) 
   source.recorded.record(recorder, piece.arrival, piece.bytes);
 }
 
-/// A new sender gets its own channel, also if it takes the number of a sender that fell silent.
+/// A new sender gets a new channel, even if it takes the number of a silent sender.
 RecordedPort::Source& RecordedPort::source_of(const Piece& piece, Recorder& recorder) {
   const std::size_t number = piece.sender;
   const Senders& senders =
@@ -85,7 +85,7 @@ RecordedPort::Source& RecordedPort::source_of(const Piece& piece, Recorder& reco
   const Senders::Sender& sender = senders.at(number);
   const bool is_shared = sender.serial > Senders::most_serials;
   if (sources_.size() <= number) sources_.resize(number + 1);
-  // The number now stands for several senders, so it has no source of its own.
+  // The number is now shared by several senders, so they use the common source `others_`.
   if (is_shared) sources_[number].reset();
   std::optional<Source>& source = is_shared ? others_ : sources_[number];
   const NodeAddress address{sender.host, sender.port};
@@ -106,7 +106,7 @@ RecordedPort::Source& RecordedPort::source_of(const Piece& piece, Recorder& reco
   return *source;
 }
 
-/// Returns "/kinect/raw" for the first sender of the port, "/kinect/raw/2" for the next one.
+/// Returns "/kinect/raw" for the first sender of the port and "/kinect/raw/2" for the second.
 std::string RecordedPort::topic(const char* content, std::uint64_t serial) const {
   const std::string first = "/" + device_.name + "/" + content;
   if (serial > Senders::most_serials) return first + "/others";
@@ -115,7 +115,7 @@ std::string RecordedPort::topic(const char* content, std::uint64_t serial) const
 
 void RecordedPort::answer_pings(Source& source, const Piece& piece, HostAxis& axis,
                                 Recorder& recorder) {
-  // bytes; keeps the port from being used for amplification with forged addresses
+  // bytes; prevents amplification with forged addresses
   std::size_t may_send = piece.bytes.size();
   for (const KinectPing& ping : source.watch.pings()) {
     const auto exchange = kinect_responder_->receive(ping, source.address.host, piece.arrival);
@@ -131,7 +131,7 @@ void RecordedPort::answer_pings(Source& source, const Piece& piece, HostAxis& ax
         std::visit([&](auto& pieces) { pieces.send(piece.sender, octets(bytes)); }, pieces_);
       }
     }
-    // The channel is added with the first ping, because a sender may send none.
+    // The exchange channel is added with the first ping, because some senders send no ping.
     if (!source.exchanges) {
       source.clock = std::make_unique<FollowedClock>();
       McapChannel channel = to_channel(topic("exchange", source.serial), source.raw);
@@ -147,7 +147,7 @@ void RecordedPort::answer_pings(Source& source, const Piece& piece, HostAxis& ax
   }
 }
 
-/// A tracker that sends a handshake starts new counts, also at an address that another tracker had.
+/// A tracker that sends a handshake starts new counts, even if another tracker had the address.
 void RecordedPort::answer_trackers(Source& source, const Piece& piece) {
   look_at(source);
   const SlimeResult result =
@@ -158,8 +158,8 @@ void RecordedPort::answer_trackers(Source& source, const Piece& piece) {
   send_answers();
 }
 
-// Answers may go to another address than the last datagram's: heartbeats and pings are due without
-// a request.
+// Heartbeats and pings are due without a request, so an answer may go to another address than that
+// of the last datagram.
 void RecordedPort::send_answers() {
   auto* udp = std::get_if<UdpPieces>(&pieces_);  // trackers use UDP only
   if (udp == nullptr) return;
@@ -168,7 +168,7 @@ void RecordedPort::send_answers() {
   }
 }
 
-// Only trackers expect messages that they did not ask for.
+// Only SlimeVR trackers expect messages without a request.
 void RecordedPort::tick(HostTime now) {
   if (!slime_responder_) return;
   slime_responder_->tick(now);
@@ -191,29 +191,30 @@ void RecordedPort::look(HostTime now) {
   });
 }
 
-/// Updates the status of a sender except its messages and bytes.
+/// Updates the status of a sender, except its numbers of messages and bytes.
 void RecordedPort::look_at(Source& source) const {
   SenderCounts& counts = source.recorded.status.counts;
   const SenderCounts watched = source.watch.counts();
-  // Trackers are decoded by SlimeResponder, all others by the watch; the other number is 0.
+  // SlimeResponder decodes trackers, and the watch decodes all other senders. The other number is
+  // 0.
   counts.frames = watched.frames + source.tracker_packets;
   if (!slime_responder_) counts.order = watched.order;
   counts.refused = watched.refused + refused(source.verdicts) + source.pings_refused;
   if (source.clock) source.recorded.status.clock = source.clock->now();
   const SlimeDevice* tracker =
       slime_responder_ ? slime_responder_->device_at(source.address) : nullptr;
-  // the tracker has another address now; this address keeps its counts
+  // the tracker has another address now; the old address keeps its counts
   if (tracker == nullptr) return;
   counts.order = source.counts_before_handshake;
   counts.order += tracker->numbers.counts();
   if (tracker->battery_volts) source.recorded.status.battery_volts = *tracker->battery_volts;
 }
 
-/// Looks for faults of a sender, for example that Axis Studio sends its compressed stream. The user
-/// must learn of them during the take. A host that reconnects is not reported again.
+/// Looks for faults of a sender, such as the compressed stream of Axis Studio. The user must be
+/// told during the take. A host that reconnects is not reported again.
 void RecordedPort::find_faults(const Source& source) {
   const SenderCounts& counts = source.recorded.status.counts;
-  // A sender that sends only pings speaks the right protocol.
+  // A sender that sends only pings uses the right protocol.
   const bool none = !source.exchanges && speaks_another_protocol(protocol_->recorded_name, counts);
   if (counts.refused == 0 && !none && !source.watch.has_overlap()) return;
   const std::string host = to_string(source.address.host);

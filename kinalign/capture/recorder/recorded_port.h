@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device's port during recording. It reads the port, records each sender in its own channel, and
-// counts what is lost by the senders' own numbers. If the protocol needs answers, it sends them.
+// One device's port during recording. It reads the port and records each sender in its own channel.
+// It counts losses by the senders' own numbers and answers if the protocol requires answers.
 #pragma once
 
 #include "kinalign/capture/net/followed_clock.h"
@@ -22,35 +22,35 @@
 
 namespace kinalign {
 
-/// The order for each piece: count, answer, record. Every piece of a sender with a number is
-/// recorded, whatever the watch says of it.
+/// The steps for each piece are: count, answer, record. Each piece of a sender that has a number is
+/// recorded, even if it can't be decoded.
 class RecordedPort {
  public:
   /// `secret`: random in each run and different for each port.
   static Result<RecordedPort> open(const DeviceOptions& device, const SipHashKey& secret);
 
   void add_fds(std::vector<int>& fds) const;
-  /// Reads, answers and records what has arrived, a limited amount.
+  /// Reads, answers and records a limited amount of the data that has arrived.
   void drain(HostAxis& axis, Recorder& recorder);
-  /// Call about ten times a second. Sends messages that are due without a request.
+  /// Call about ten times a second. Sends the messages that the protocol requires at fixed times.
   void tick(HostTime now);
-  /// Call once a second. Updates the senders' rates, and looks for faults of the senders.
+  /// Call once a second. Updates the senders' rates and looks for faults of the senders.
   void look(HostTime now);
 
   const DeviceOptions& device() const { return device_; }
   std::uint16_t port() const;
   PortCounts counts() const;
-  /// Pieces since the port was opened, including refused ones.
+  /// Number of pieces since the port was opened, including refused ones.
   std::uint64_t received() const;
-  /// Appends the status of each sender, with counts since its first message.
+  /// Appends the status of each sender. The counts begin with the sender's first message.
   void add_streams(std::vector<StreamStatus>& all);
-  /// Findings about senders since the previous call. Each fault of a host is reported once.
+  /// Findings about senders since the previous call. Each fault is reported once per host.
   Findings take_findings() { return findings_.take(); }
 
  private:
   using Pieces = std::variant<UdpPieces, TcpPieces>;
-  /// Everything about one sender that has a channel. It is made with the sender's first piece and
-  /// replaced when the sender's number gets another sender.
+  /// Everything about one sender that has a channel. It is made with the sender's first piece. It
+  /// is replaced when the number is given to another sender.
   struct Source {
     RecordedSource recorded;
     RawChannel raw;
@@ -60,8 +60,8 @@ class RecordedPort {
     // channel of the clock exchanges; absent before the first ping
     std::optional<std::uint16_t> exchanges{};
     std::unique_ptr<FollowedClock> clock{};  // absent before the first ping
-    // SlimeVR only: the counts of this address up to its newest handshake, datagrams by verdict,
-    // and datagrams that contain a packet of a tracker
+    // SlimeVR only: counts of this address before its newest handshake, datagrams by verdict, and
+    // datagrams that contain a tracker's packet.
     SequenceCounts counts_before_handshake{};
     SlimeVerdicts verdicts{};
     std::uint64_t tracker_packets = 0;
@@ -74,13 +74,13 @@ class RecordedPort {
   void take(const Piece& piece, HostAxis& axis, Recorder& recorder);
   Source& source_of(const Piece& piece, Recorder& recorder);
   std::string topic(const char* content, std::uint64_t serial) const;
-  /// Each answering function is used for one protocol only. Both send through the port itself.
+  /// Each answering function serves one protocol. Both send through this port.
   void answer_pings(Source& source, const Piece& piece, HostAxis& axis, Recorder& recorder);
   void answer_trackers(Source& source, const Piece& piece);
   void send_answers();
   template <class Visit>
   void for_each_source(Visit visit);
-  /// `look_at` brings the counts up to date; `find_faults` makes findings of them.
+  /// `look_at` updates the counts. `find_faults` derives findings from them.
   void look_at(Source& source) const;
   void find_faults(const Source& source);
 

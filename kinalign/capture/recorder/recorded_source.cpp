@@ -20,15 +20,15 @@ void RecordedSource::record(Recorder& recorder, HostTime arrival, std::string_vi
   ++status.counts.messages;
   status.counts.bytes += bytes.size();
   status.last_arrival = arrival;
-  // called last, because it may close the chunk
+  // called last, because it may close the chunk of the recording
   recorder.record(channel_, arrival, bytes, device_ns);
 }
 
 void RecordedSource::take_rate(HostTime now) {
-  // a rate over a shorter time is too inaccurate
+  // a shorter time gives an inaccurate rate
   constexpr Duration shortest = std::chrono::milliseconds(500);
   if (!rated_ || now - *rated_ < shortest) return;
-  // Samples if the source counts them, otherwise frames or, without frames, messages.
+  // Samples if the source counts samples, otherwise frames, or messages if there are no frames.
   const std::uint64_t counted =
       status.samples > 0 ? status.samples : frames_or_messages(status.counts);
   const std::uint64_t before = std::exchange(counted_, counted);

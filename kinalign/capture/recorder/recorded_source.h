@@ -13,12 +13,13 @@
 
 namespace kinalign {
 
-/// `status` is public, because the port and the nodes update their own fields of it.
+/// `status` is public, because RecordedPort and RecordedNodes update some of its fields.
 class RecordedSource {
  public:
   /// Adds a channel to the recorder.
   RecordedSource(Recorder& recorder, const std::string& topic, const RawChannel& raw);
 
+  /// Records one payload. `device_ns`: stamp of the device's own clock, ns.
   void record(Recorder& recorder, HostTime arrival, std::string_view bytes,
               std::optional<std::uint64_t> device_ns = std::nullopt);
   /// Call once a second. Updates the rate.
@@ -28,8 +29,8 @@ class RecordedSource {
 
  private:
   std::uint16_t channel_ = 0;
-  std::optional<HostTime> rated_;  // time of the last rate, or of the first message
-  std::uint64_t counted_ = 0;      // samples, frames or messages up to that time
+  std::optional<HostTime> rated_;  // time of the last rate; before that, of the first message
+  std::uint64_t counted_ = 0;      // samples, frames or messages at that time
 };
 
 }  // namespace kinalign

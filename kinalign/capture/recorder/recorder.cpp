@@ -6,7 +6,7 @@
 
 namespace kinalign {
 
-// Numbers have 16 bits. The last one is the channel that all further senders share.
+// Numbers have 16 bits. The last number is shared by all further channels.
 std::uint16_t Recorder::add_channel(McapChannel channel, const McapSchema* schema) {
   constexpr std::uint16_t last = 0xffff;
   if (channels_.size() > last) return last;
@@ -33,7 +33,7 @@ std::uint16_t Recorder::schema_id(const McapSchema& schema) {
   return schemas_.back().id = static_cast<std::uint16_t>(schemas_.size());
 }
 
-// A chunk must be readable alone, so it contains the definitions of its channels.
+// Each chunk must be readable alone, so it contains the definitions of its channels.
 void Recorder::record(std::uint16_t number, HostTime arrival, std::string_view data,
                       std::optional<std::uint64_t> device_ns) {
   newest_ = opened_ ? std::max(newest_, arrival) : arrival;
@@ -48,8 +48,8 @@ void Recorder::record(std::uint16_t number, HostTime arrival, std::string_view d
   }
   const auto log =
       static_cast<std::uint64_t>((arrival.time_since_epoch() + options_.utc_minus_host).count());
-  // The sequence counts all messages of a channel, also before takes, so gaps between takes show in
-  // it.
+  // The sequence number counts all messages of a channel, also before takes. A gap between two
+  // takes is therefore visible.
   const McapMessage message{number, static_cast<std::uint32_t>(channel.messages++), log,
                             device_ns.value_or(log), data};
   chunk_.add(message);
@@ -57,13 +57,14 @@ void Recorder::record(std::uint16_t number, HostTime arrival, std::string_view d
   if (chunk_.size() >= options_.chunk_bytes) close();
 }
 
-// A chunk is closed by time even if nothing more arrives, so that a kill loses little.
+// A chunk is closed after its time even if no message arrives, so that a killed program loses
+// little.
 void Recorder::tick(HostTime now) {
   if (opened_ && now - *opened_ >= options_.chunk) close();
   if (!started()) forget_before(now - options_.pre_roll);
 }
 
-// The chunk goes to the take if there is one, else to the pre-roll.
+// The chunk goes to the take in progress, or else to the pre-roll.
 void Recorder::close() {
   if (!opened_) return;
   opened_.reset();
@@ -79,13 +80,13 @@ void Recorder::close() {
   if (closed_) closed_(number_, first_number());
 }
 
-// During a take the pre-roll is empty: a take that began now would begin with the open chunk.
+// If the pre-roll is empty, a take that began now would begin with the open chunk.
 std::uint64_t Recorder::first_number() const {
   return pre_roll_.empty() ? number_ : pre_roll_.front().number;
 }
 
-/// Discards whole chunks only. The kept chunks therefore reach back the pre-roll and up to one
-/// chunk more.
+/// Discards whole chunks only. The kept chunks therefore cover up to one chunk more than the
+/// pre-roll.
 void Recorder::forget_before(HostTime first) {
   while (!pre_roll_.empty() &&
          (pre_roll_.front().end < first || pre_roll_bytes_ > options_.pre_roll_bytes)) {
@@ -94,7 +95,7 @@ void Recorder::forget_before(HostTime first) {
   }
 }
 
-// The open chunk is not closed; it goes to the take as a whole.
+// The open chunk stays open and goes to the take as a whole.
 std::uint64_t Recorder::start(HostTime now, Take take) {
   forget_before(now - options_.pre_roll);
   const std::uint64_t first = first_number();

@@ -11,7 +11,7 @@ namespace kinalign {
 namespace {
 
 constexpr std::string_view suffix = ".mcap";
-constexpr int most_parts = 1000;  // limit on the file names that are tried
+constexpr int most_parts = 1000;  // limit on the number of the last part
 
 std::string part_path(const std::string& path, int part) {
   if (part == 1) return path;
@@ -19,8 +19,7 @@ std::string part_path(const std::string& path, int part) {
          std::string(suffix);
 }
 
-/// The path of the next file. If a file of an earlier recording has that name, only its number is
-/// skipped.
+/// Returns the path of the next file. If a file of that name exists, the next number is used.
 Result<std::string> free_path(const std::string& path, int part) {
   for (; part <= most_parts; ++part) {
     std::string free = part_path(path, part);
@@ -30,7 +29,7 @@ Result<std::string> free_path(const std::string& path, int part) {
   return Failure(Error{path, 0, "at most 1000 files of one recording", "more"});
 }
 
-// The writer shares the file with a sync that may be in progress.
+// The writer shares ownership of the file with a sync that may be in progress.
 McapStore store_of(const std::shared_ptr<GrowingFile>& file) {
   return {[file](std::string_view bytes) { return file->append(bytes); },
           [file](std::uint64_t at, std::span<char> to) { return file->read_at(at, to); }};
@@ -45,10 +44,10 @@ Result<RecordingDisk> RecordingDisk::open(FileSystem& files, std::string path, M
   return disk;
 }
 
-/// Creates the next file and writes its head. If that fails halfway, the file is removed, since it
-/// contains no sample.
+/// Creates the next file and writes its head. If that fails, the file is removed, since it contains
+/// no sample.
 Result<void> RecordingDisk::open_part() {
-  // The number is that of the part; the name may have a higher one if names are taken.
+  // This number counts the parts. The number in the name may be higher if names are in use.
   const int part = static_cast<int>(paths_.size()) + 1;
   const std::string path = KA_TRY(free_path(path_, part));
   auto file = std::make_shared<GrowingFile>(KA_TRY(GrowingFile::create(*files_, path)));
@@ -73,7 +72,7 @@ Result<void> RecordingDisk::open_part() {
   return {};
 }
 
-/// If no file is open, the next write tries again. The failure was reported before.
+/// If no file is open, write() attempts to open one. The earlier failure is already reported.
 Result<void> RecordingDisk::write(McapStoredChunk chunk) {
   kept_bytes_ += chunk.bytes.size();
   kept_.push_back({std::move(chunk)});
@@ -81,8 +80,8 @@ Result<void> RecordingDisk::write(McapStoredChunk chunk) {
   return put || !open_ ? put : next_part(put.error());
 }
 
-/// Writes all chunks that are not in the file yet. A new file that accepts none of them is removed.
-/// Otherwise a full disk that still accepts names would fill with empty files.
+/// Writes all chunks that the file lacks. If a new file accepts none of them, it is removed.
+/// Otherwise a full disk that still creates files would collect empty files.
 Result<void> RecordingDisk::put_kept() {
   const bool fresh = !open_;
   if (fresh) KA_TRY(open_part());
@@ -94,7 +93,7 @@ Result<void> RecordingDisk::put_kept() {
     kept.end = file_->size();
     kept.written = true;
   }
-  // The new file now has all chunks of the repeated one.
+  // The new file now has all chunks of the abandoned one.
   if (repeated_) files_->remove(std::exchange(repeated_, std::nullopt)->path.c_str());
   if (given_up_) failures_.push_back({*std::exchange(given_up_, std::nullopt), paths_.back()});
   return {};
@@ -106,15 +105,16 @@ void RecordingDisk::remove_part() {
   open_ = stands_ = false;
 }
 
-/// Ends the file as well as possible. All chunks in memory will be written to the next file too. If
-/// the file is not the first one and none of its syncs succeeded, the next file repeats all its
-/// chunks, and the file is kept only until then. Otherwise a disk on which every sync fails would
-/// collect a thousand files. Of two such files the one with more chunks is kept.
+/// Ends the file as well as possible. The next file will repeat all chunks in memory.
+///
+/// If no sync of the file succeeded and it is not the first file, the next file repeats all its
+/// chunks. The file is then removed. Otherwise a disk on which every sync fails would collect a
+/// thousand files. If two such files exist, the one with more chunks is kept.
 void RecordingDisk::give_up_part() {
   if (!std::exchange(stands_, false)) return;
-  // Bytes of all other files. If this file is finished already, bytes_before_ includes it.
+  // Size of all other files. If this file is already finished, bytes_before_ includes it.
   const std::uint64_t of_others = bytes_before_ - (open_ ? 0 : file_->size());
-  // The result does not matter: the next file repeats what this one may lack.
+  // A failure does not matter, because the next file repeats what this file may lack.
   (void)finish_part();
   const auto chunks = static_cast<std::size_t>(
       std::count_if(kept_.begin(), kept_.end(), [](const Kept& kept) { return kept.end != 0; }));
@@ -128,8 +128,8 @@ void RecordingDisk::give_up_part() {
   repeated_ = std::move(one);
 }
 
-/// Continues in a new file. If none can be written, the failure is reported once without a name;
-/// when a file accepts data, it is reported with the file's name.
+/// Continues in a new file. If no file can be written, the failure is reported once without a file
+/// name. When a file accepts data, the failure is reported again with that name.
 Result<void> RecordingDisk::next_part(const Error& why) {
   const bool reported = std::exchange(given_up_, given_up_.value_or(why)).has_value();
   give_up_part();
@@ -138,7 +138,7 @@ Result<void> RecordingDisk::next_part(const Error& why) {
   return result;
 }
 
-// A chunk that was written to a file and never synced may be readable, so it does not count.
+// A chunk that was written but never synced may be readable, so it does not count.
 std::uint64_t RecordingDisk::unwritten() const {
   std::uint64_t messages = 0;
   for (const Kept& kept : kept_) {
@@ -154,13 +154,13 @@ std::optional<RecordingDisk::Sync> RecordingDisk::unsynced() const {
 }
 
 Result<void> RecordingDisk::synced(const Sync& sync, const Result<void>& result) {
-  if (!open_ || sync.file != file_) return {};  // the file was given up in the meantime
+  if (!open_ || sync.file != file_) return {};  // the file was abandoned in the meantime
   if (!result) return next_part(result.error());
   forget_synced(sync.size);
   return {};
 }
 
-// Only bytes that a sync has confirmed are forgotten; chunks are in the order of the file.
+// Only chunks that a sync has confirmed are removed. The chunks are in the order of the file.
 void RecordingDisk::forget_synced(std::uint64_t size) {
   synced_ = size;
   while (!kept_.empty() && kept_.front().end != 0 && kept_.front().end <= size) {
@@ -169,8 +169,8 @@ void RecordingDisk::forget_synced(std::uint64_t size) {
   }
 }
 
-/// Finishes the file, once. If that fails, the incomplete end is cut off. The file can still be
-/// read, and `recover` gives it an index.
+/// Finishes the file once. If that fails, the incomplete end is cut off. The file is then readable,
+/// and `recover` can write its index.
 Result<void> RecordingDisk::finish_part() {
   if (!std::exchange(open_, false)) return {};
   const std::uint64_t size = file_->size();
@@ -180,7 +180,7 @@ Result<void> RecordingDisk::finish_part() {
   return finished;
 }
 
-// The order matters: all chunks, the counts of the end, the index, and then one sync for all.
+// The order is: all chunks, the counts of the end, the index, and then one sync.
 Result<void> RecordingDisk::finish_once(const McapMetadata& end) {
   KA_TRY(put_kept());
   KA_TRY(writer_->write(end));
@@ -191,12 +191,12 @@ Result<void> RecordingDisk::finish_once(const McapMetadata& end) {
   return {};
 }
 
-/// Tries twice. If only the last sync failed, the file may still lack its data, so a new file is
-/// begun.
+/// Attempts to finish twice. If only the last sync failed, the file may still lack data, so a new
+/// file is begun.
 Result<void> RecordingDisk::finish(const McapMetadata& end) {
   Result<void> result = finish_once(end);
   if (result) return result;
-  // A caller may call finish() every second; the failure is reported by the first call only.
+  // The caller may call finish() every second. Only the first call reports the failure.
   const std::size_t reported = failures_.size();
   result = next_part(result.error());
   if (result) result = finish_once(end);

@@ -17,12 +17,12 @@ namespace {
 constexpr Duration between_looks = std::chrono::milliseconds(100);
 constexpr std::size_t most_untaken = 256;  // marks kept for take_marks()
 
-/// The MCAP header of each file of a take, and of each live stream.
+/// Returns the MCAP header of each file of a take and of each live stream.
 McapHeader recording_header() {
   return {std::string(recording_profile), "kinalign " KINALIGN_VERSION};
 }
 
-/// Opens a take's file on the disk's thread. It owns all data that it needs.
+/// Opens a take's file on the disk's thread, using copies of all data that it needs.
 struct TakeFiles {
   FileSystem* files;
   std::function<std::string()> free_path;
@@ -30,15 +30,15 @@ struct TakeFiles {
   ExpectedDevices expected;
   std::vector<McapAttachment> attachments;
 
-  // If the same path is still free, the failure has another cause than a taken name.
+  // If free_path returns the same path again, the name was not the cause of the failure.
   Result<RecordingDisk> operator()() {
-    constexpr int most_tries = 100;  // a disk may accept names but no files
+    constexpr int most_tries = 100;  // a disk may create names but no files
     std::string path = free_path();
     for (int tries = 1;; ++tries) {
       Result<RecordingDisk> opened = open(path);
       const std::string next = opened ? path : free_path();
       if (next == path || tries == most_tries) return opened;
-      path = next;  // another recorder has taken the name in the meantime
+      path = next;  // another recorder has created this file in the meantime
     }
   }
   // Each file gets a copy of the head, because each file must be readable alone.
@@ -77,7 +77,7 @@ ExpectedDevices expected_of(const Lab& lab) {
   return expected;
 }
 
-/// A separate key for each port, so that no two ports draw the same nonces.
+/// Derives a separate key for each port, so that no two ports use the same nonces.
 SipHashKey key_of_port(const SipHashKey& secret, std::uint8_t port) {
   SipHashKey key{};
   for (std::uint8_t half = 0; half < 2; ++half) {
@@ -92,8 +92,8 @@ SipHashKey key_of_port(const SipHashKey& secret, std::uint8_t port) {
 
 }  // namespace
 
-// A session whose ports can't all be opened does not begin: a missing device would show only in the
-// take.
+// If one port can't be opened, the session does not begin. Otherwise the missing device would be
+// noticed only in the take.
 Result<std::unique_ptr<RecordingSession>> RecordingSession::open(Options options, Machine machine) {
   KA_TRY(validate(options.lab));
   std::unique_ptr<RecordingSession> session(new RecordingSession(std::move(options), machine));
@@ -101,12 +101,12 @@ Result<std::unique_ptr<RecordingSession>> RecordingSession::open(Options options
   return session;
 }
 
-// The channels of the session come first, so their numbers are the same in every recording.
+// The session's channels are added first, so their numbers are the same in every recording.
 RecordingSession::RecordingSession(Options options, Machine machine)
     : options_(std::move(options)), machine_(machine), axis_(machine.ports_clock) {
   opened_ = axis_.now();
   facts_.host = options_.host;
-  // The pair of clocks that gives UTC to all takes of this session.
+  // This pair of clock readings converts host times to UTC in all takes of this session.
   facts_.anchor = axis_.watch();
   RecorderOptions recorder;
   recorder.pre_roll = from_seconds(options_.lab.record.pre_roll_s);
@@ -130,7 +130,7 @@ RecordingSession::RecordingSession(Options options, Machine machine)
   });
 }
 
-// A device of protocol nodes gets RecordedNodes, any other device a RecordedPort.
+// A device with the protocol of nodes gets RecordedNodes, any other device a RecordedPort.
 Result<void> RecordingSession::open_ports() {
   for (const DeviceOptions& device : options_.lab.devices) {
     const auto protocol = find_protocol(device.protocol);
@@ -167,20 +167,22 @@ void RecordingSession::end_live() {
   if (live_) live_->end();
 }
 
-// Pieces of all devices, refused ones included. Marks do not count: they are few.
+// Number of pieces from all devices, including refused ones. Marks are not counted, because they
+// are few.
 std::uint64_t RecordingSession::received() const {
   std::uint64_t all = nodes_ ? nodes_->receiver().received() : 0;
   for (const RecordedPort& port : ports_) all += port.received();
   return all;
 }
 
-/// Waking up costs more than processing a message. At a lab's rates the messages of 20 ms are
-/// therefore processed together. In a flood the buffers fill, so there is no rest. Resting does not
-/// affect clocks: arrivals are stamped by the kernel, and the times of an answer are known. Live
-/// clients need each message at once, so there is no rest for them either.
+/// Pauses before the next read. Waking up costs more than processing a message, so the messages of
+/// 20 ms are processed together. If data arrives too fast, there is no rest, because the buffers
+/// would fill. Clock estimates are not affected: the kernel stamps arrivals, and the times of each
+/// answer are known. Live clients need each message at once, so there is no rest while a client is
+/// connected.
 void RecordingSession::rest(Duration patience) {
   constexpr Duration short_rest = std::chrono::milliseconds(20);
-  constexpr std::uint64_t few = 32;  // in a turn; the kernel's buffers hold twice as many
+  constexpr std::uint64_t few = 32;  // pieces in a turn; the kernel's buffers hold twice as many
   const std::uint64_t all = received();
   const std::uint64_t came = all - std::exchange(received_before_, all);
   const HostTime now = axis_.now();
@@ -191,8 +193,8 @@ void RecordingSession::rest(Duration patience) {
   }
 }
 
-/// Marks are read before the devices. Each stop mark reads all data that has arrived by then, so
-/// data that was sent before a stop is in its take.
+/// Marks are read before the devices' data. After each stop mark, all data that has arrived is
+/// read, so data that was sent before the stop is in the take.
 void RecordingSession::turn(Duration patience, std::optional<int> also) {
   rest(patience);
   wait(patience, also);
@@ -200,7 +202,7 @@ void RecordingSession::turn(Duration patience, std::optional<int> also) {
   drain_marks();
   if (now >= next_look_) {
     next_look_ = now + between_looks;
-    // Silent nodes, heartbeats and pings are due several times a second.
+    // Silent nodes, heartbeats and pings are handled several times a second.
     if (nodes_) nodes_->receiver().tick();
     for (RecordedPort& port : ports_) port.tick(now);
   }
@@ -211,7 +213,7 @@ void RecordingSession::turn(Duration patience, std::optional<int> also) {
   start_disks();
 }
 
-// The list of descriptors is made anew in each turn, because connections and nodes come and go.
+// The list of descriptors is made in each turn, because connections and nodes change.
 void RecordingSession::wait(Duration patience, std::optional<int> also) {
   std::vector<int> fds;
   if (nodes_) fds.push_back(nodes_->receiver().fd());
@@ -226,13 +228,13 @@ void RecordingSession::wait(Duration patience, std::optional<int> also) {
   ::poll(polled.data(), polled.size(), static_cast<int>(ms));
 }
 
-/// Reads what has arrived, a limited amount per port.
+/// Reads a limited amount of the data that has arrived at each port.
 void RecordingSession::drain_devices() {
   if (nodes_) nodes_->drain();
   for (RecordedPort& port : ports_) port.drain(axis_, *recorder_);
 }
 
-/// Stops after 200 ms, so that a flood cannot delay the end of a take further.
+/// Stops after 200 ms, so that a flood of data can't delay the end of a take for longer.
 void RecordingSession::drain_until_empty() {
   constexpr Duration longest = std::chrono::milliseconds(200);
   const HostTime begun = axis_.now();
@@ -243,8 +245,8 @@ void RecordingSession::drain_until_empty() {
   } while (received() != before && axis_.now() - begun < longest);
 }
 
-/// Processes the marks of all ports in the order of arrival, because a start may come to one port
-/// and its stop to another.
+/// Processes the marks of all ports in the order of arrival, because the start and the stop may
+/// arrive at different ports.
 void RecordingSession::drain_marks() {
   std::vector<ReceivedMark> all;
   for (MarkPort& port : mark_ports_) {
@@ -261,7 +263,7 @@ void RecordingSession::mark(const RecordedMark& mark, HostTime at) {
   const Kind kind = mark.mark.kind;
   if (kind == Kind::start && may_start()) {
     if (by_marks_->starts == Starts::next) by_marks_->starts = Starts::none;
-    // A start during a take begins no second one.
+    // A start mark during a take begins no second take.
     if (!recording()) start(by_marks_->plan, at);
     if (std::exchange(stop_is_due_, false)) {
       findings_.push_back(
@@ -273,14 +275,14 @@ void RecordingSession::mark(const RecordedMark& mark, HostTime at) {
     }
   }
   recorder_->record(mark_channel_, at, to_json(mark));
-  // Marks beyond the limit are recorded, but not shown.
+  // Marks beyond the limit are recorded but not displayed.
   if (marks_.size() < most_untaken) marks_.emplace_back(mark, at);
   if (kind != Kind::stop || !by_marks_) return;
   stop_is_due_ = recording();
   end_take_if_due();
 }
 
-// Stop marks still work, because by_marks_ stays.
+// by_marks_ remains set, so stop marks still work.
 void RecordingSession::obey_no_start() {
   if (by_marks_) by_marks_->starts = Starts::none;
 }
@@ -300,7 +302,7 @@ void RecordingSession::record_counts(HostTime now) {
   if (nodes_) nodes_->look(now);
   if (!recording()) return;
   for (const StreamStatus& stream : streams()) {
-    // A sender that sent nothing in this take is not in its counts.
+    // A sender that sent nothing during this take is not counted in it.
     if (stream.counts.messages == 0) continue;
     recorder_->record(
         counts_, now,
@@ -311,7 +313,7 @@ void RecordingSession::record_counts(HostTime now) {
   }
 }
 
-/// `at`: begin of the take; the pre-roll reaches back from there.
+/// `at`: begin of the take. The pre-roll is the time before it.
 void RecordingSession::start(const TakePlan& plan, HostTime at) {
   const auto compression =
       options_.lab.record.compression == "none" ? McapCompression::none : McapCompression::zstd;
@@ -324,31 +326,31 @@ void RecordingSession::start(const TakePlan& plan, HostTime at) {
   takes_.push_back(take);
   stop_is_due_ = false;
   const std::uint64_t first = recorder_->start(at, [this, take](McapChunkContent chunk) {
-    // All takes together share the limit, because a take may begin while another is still being
+    // All takes share the limit, because a take may begin while the previous take is still being
     // written.
     const std::uint64_t others = waiting_bytes() - take->disk.status().waiting_bytes;
     take->disk.push(std::move(chunk),
                     DiskThread::most_waiting - std::min(others, DiskThread::most_waiting));
   });
-  // From now on all counts are those of the take. Nothing precedes the first chunk of all.
+  // From now on all counts are those of the take. Before the very first chunk all counts are zero.
   before_ = past_[first];
   start_disks();
 }
 
-/// Tries again if the system had no thread. The file of the take before is opened first, so that
-/// files are numbered in the order of takes.
+/// Starts the disk threads, or attempts it again if the system had no thread. The file of the
+/// earlier take is opened first, so that files are numbered in the order of takes.
 void RecordingSession::start_disks() {
   for (const auto& take : takes_) {
     const DiskStatus disk = take->disk.status();
     if (disk.finished) continue;
     (void)take->disk.start();
-    // Later takes wait until this one has its file and so its number.
+    // Later takes wait until this take has its file and thus its number.
     if (disk.paths.empty()) return;
   }
 }
 
-// Marks that have arrived are in the take, too. They may end it and begin another one, which is
-// then not ended.
+// Marks that have arrived are in the take too. They may end this take and begin another one, which
+// then continues.
 void RecordingSession::stop() {
   if (!recording()) return;
   const auto ending = takes_.back();
@@ -358,8 +360,8 @@ void RecordingSession::stop() {
 }
 
 void RecordingSession::end_take_if_due() {
-  // With two takes unreleased and starts still to come, the end is postponed: a third take would
-  // have no place.
+  // If two takes are not released and another start is possible, the end is postponed, because a
+  // third take would have no place.
   if (!stop_is_due_ || (takes_.size() > 1 && may_start())) return;
   stop_is_due_ = false;
   drain_until_empty();
@@ -369,7 +371,7 @@ void RecordingSession::end_take_if_due() {
   SessionTake& take = *takes_.back();
   take.end = status();
   take.end->ended = true;
-  // Senders of earlier takes have no message in this one.
+  // Senders that have no message in this take are removed.
   std::erase_if(take.end->streams,
                 [](const StreamStatus& one) { return one.counts.messages == 0; });
   take.disk.finish();
@@ -396,7 +398,7 @@ std::vector<StreamStatus> RecordingSession::streams() {
   return all;
 }
 
-// Counts since the session was opened.
+// Returns the counts since the session was opened.
 std::vector<StreamStatus> RecordingSession::running_streams() {
   std::vector<StreamStatus> all;
   for (RecordedPort& port : ports_) port.add_streams(all);
@@ -428,7 +430,7 @@ std::vector<std::pair<std::string, PortCounts>> RecordingSession::port_counts() 
   return all;
 }
 
-// Counts since the session was opened.
+// Returns the counts since the session was opened.
 std::vector<std::pair<std::string, PortCounts>> RecordingSession::running_port_counts() const {
   std::vector<std::pair<std::string, PortCounts>> all;
   for (const RecordedPort& port : ports_) all.emplace_back(port.device().name, port.counts());

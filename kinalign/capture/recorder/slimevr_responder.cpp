@@ -10,7 +10,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr Duration left_after = seconds(1);  // SlimeVR's own server does the same
+constexpr Duration left_after = seconds(1);  // the same time as in SlimeVR's own server
 constexpr Duration tracker_replaced_after = seconds(60);
 constexpr Duration heartbeat_every = milliseconds(500), ping_every = seconds(1);
 // Limit on the bytes that may be sent to a device without new data from it.
@@ -26,9 +26,9 @@ std::uint64_t refused(const SlimeVerdicts& verdicts) {
          verdicts[Verdict::late];
 }
 
-/// Faults that the refused datagrams of a port show, for the user.
+/// Returns the faults that the refused datagrams of an address show.
 Findings findings_of(const SlimeVerdicts& verdicts, const std::string& name) {
-  constexpr std::uint64_t too_often = 3;  // a tracker that moves causes fewer
+  constexpr std::uint64_t too_often = 3;  // a tracker that changes its address causes fewer
   constexpr const char* unanswered =
       "record does not answer this tracker, so the tracker sends no rotations";
   Findings findings;
@@ -54,7 +54,7 @@ SlimeResponder::SlimeResponder(const SipHashKey& secret)
 SlimeResult SlimeResponder::receive(const SlimeArrival& arrival) {
   if (!decode_slime(arrival.bytes, datagram_)) return {};
   const bool has_packet = !datagram_.packets.empty();
-  // A handshake inside a bundle is ignored: only trackers that are known already send bundles.
+  // A handshake inside a bundle is ignored, because only known trackers send bundles.
   if (datagram_.type == handshake_type && has_packet) {
     const SlimeVerdict verdict =
         take_handshake(std::get<SlimeHandshake>(datagram_.packets.front()), arrival);
@@ -63,7 +63,7 @@ SlimeResult SlimeResponder::receive(const SlimeArrival& arrival) {
   SlimeDevice* device = find_device(arrival.from);
   if (device == nullptr) return {SlimeVerdict::unknown, false, has_packet};
   note_datagram(*device, arrival);
-  // Returned pings have the host's number, so they say nothing about the order.
+  // A returned ping has the number that the host sent, so its number tells nothing about the order.
   if (datagram_.type != ping_type) {
     const Order order = device->numbers.push(datagram_.number);
     if (order == Order::duplicate) return {SlimeVerdict::duplicate, false, has_packet};
@@ -73,7 +73,7 @@ SlimeResult SlimeResponder::receive(const SlimeArrival& arrival) {
   return {SlimeVerdict::accepted, false, has_packet};
 }
 
-// A tracker is identified by its MAC, or by its address if it sends no MAC.
+// The MAC address identifies a tracker. If it sends none, its network address identifies it.
 SlimeVerdict SlimeResponder::take_handshake(const SlimeHandshake& handshake,
                                             const SlimeArrival& arrival) {
   SlimeDevice* device = device_named(handshake, arrival.from);
@@ -87,7 +87,7 @@ SlimeVerdict SlimeResponder::take_handshake(const SlimeHandshake& handshake,
       return SlimeVerdict::limited;
     }
   }
-  // Another device that had this address has a new address, or it is gone.
+  // If another device had this address, that device has moved or is gone.
   SlimeDevice* other = find_device(arrival.from);
   if (other != nullptr && other != device) *other = {};
   if (!known) device = new_device(arrival.h_rx);
@@ -96,12 +96,12 @@ SlimeVerdict SlimeResponder::take_handshake(const SlimeHandshake& handshake,
   device->mac = handshake.mac;
   device->address = arrival.from;
   device->numbers = SequenceCount(64);
-  // The credit begins again: bytes from another address must not be answered here.
+  // The credit begins at zero, because bytes from another address must not be answered here.
   device->credit = 0;
   device->next_heartbeat = arrival.h_rx + heartbeat_every;
   device->next_ping = arrival.h_rx;
   note_datagram(*device, arrival);
-  // a 12-byte handshake gets no answer
+  // a handshake of only 12 bytes gets no answer
   send(*device, slime_handshake_answer(arrival.bytes.size()));
   return SlimeVerdict::accepted;
 }
@@ -117,7 +117,8 @@ SlimeDevice* SlimeResponder::find_device(const NodeAddress& address) {
   return const_cast<SlimeDevice*>(device_at(address));
 }
 
-// By MAC; a handshake without a MAC matches only a device without one at the same address.
+// Finds the device by its MAC address. A handshake without MAC matches only a device without MAC at
+// the same address.
 SlimeDevice* SlimeResponder::device_named(const SlimeHandshake& handshake,
                                           const NodeAddress& address) {
   for (SlimeDevice& device : devices_) {
@@ -127,8 +128,8 @@ SlimeDevice* SlimeResponder::device_named(const SlimeHandshake& handshake,
   return nullptr;
 }
 
-/// Returns a free place, or that of the device silent longest if it was silent for a minute. Free
-/// places have the earliest last arrival of all.
+/// Returns a free place, or the place of the device silent longest if it was silent for a minute.
+/// The last arrival of a free place is the earliest possible time.
 SlimeDevice* SlimeResponder::new_device(HostTime now) {
   SlimeDevice& place = *std::min_element(
       devices_.begin(), devices_.end(),
@@ -143,7 +144,7 @@ void SlimeResponder::note_datagram(SlimeDevice& device, const SlimeArrival& arri
   device.credit = std::min(device.credit + arrival.bytes.size(), most_credit);
 }
 
-// Only packets that need an answer or are shown to the user. Measurements are recorded as they are.
+// Handles only packets that need an answer or are displayed. Measurements are recorded as received.
 void SlimeResponder::take(SlimeDevice& device, const SlimePacket& packet) {
   if (const auto* info = std::get_if<SlimeSensorInfo>(&packet)) {
     send(device, slime_sensor_info_acknowledged(info->sensor, info->status));
@@ -154,14 +155,14 @@ void SlimeResponder::take(SlimeDevice& device, const SlimePacket& packet) {
   }
 }
 
-/// Sends at most as many bytes as arrived from that address since its handshake.
+/// Sends at most as many bytes as arrived from this address since its handshake.
 void SlimeResponder::send(SlimeDevice& device, const SlimeAnswer& answer) {
   if (device.credit < answer.size || sendings_.size() >= most_sendings) return;
   device.credit -= answer.size;
   sendings_.push_back({device.address, answer});
 }
 
-// Ids are hashed, so that a forger can't guess them.
+// The id of a ping is hashed, so that a forger can't guess it.
 void SlimeResponder::ping(SlimeDevice& device, HostTime now) {
   device.next_ping = now + ping_every;
   std::array<std::uint8_t, 8> count{};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The host's side of SlimeVR trackers (docs/formats/slimevr.md). It judges each datagram, makes the
 // answers and identifies the trackers. It uses no socket and no clock, and its memory is limited.
-// Time is an argument. Measurements are not decoded here; they are recorded as received.
+// The caller passes the time. Measurements are recorded as received and not decoded here.
 #pragma once
 
 #include "kinalign/capture/net/counts_by.h"
@@ -28,29 +28,29 @@ struct SlimeArrival {
 
 enum class SlimeVerdict : std::uint8_t {
   accepted,
-  duplicate,      // its number was received before
-  late,           // a newer one arrived before it
-  unknown,        // no handshake came from this address
-  limited,        // an unknown address that sends handshakes too often
-  duplicate_mac,  // a handshake with the MAC of a device that sends from another address
+  duplicate,      // the datagram number was received before
+  late,           // a datagram with a higher number arrived earlier
+  unknown,        // this address has not sent a handshake
+  limited,        // an unknown address sends handshakes too often
+  duplicate_mac,  // a handshake with the MAC address of a device that sends from another address
   no_room,        // the table of devices is full
   too_short       // not a datagram of a tracker
 };
 inline constexpr std::size_t slime_verdicts = 8;
 using SlimeVerdicts = CountsBy<SlimeVerdict, slime_verdicts>;
-/// Datagrams that were useless: all except accepted, duplicate and late ones.
+/// Number of useless datagrams: all except accepted, duplicate and late ones.
 std::uint64_t refused(const SlimeVerdicts& verdicts);
-/// Findings about an address with these verdicts. `name` appears in the messages.
+/// Returns findings about an address with these verdicts. `name` appears in the messages.
 Findings findings_of(const SlimeVerdicts& verdicts, const std::string& name);
 
 /// The result of one datagram, for the counts of its address.
 struct SlimeResult {
   SlimeVerdict verdict = SlimeVerdict::too_short;
   bool restarts_counts = false;  // the datagram was a handshake that was accepted
-  bool has_packet = false;  // the datagram contains a packet of a tracker; it need not be accepted
+  bool has_packet = false;       // the datagram contains a tracker's packet, accepted or not
 };
 
-/// A datagram to send. The order must be kept.
+/// A datagram to send. The datagrams must be sent in order.
 struct SlimeSending {
   NodeAddress to;
   SlimeAnswer answer;
@@ -67,23 +67,22 @@ struct SlimeDevice {
   HostTime next_heartbeat{}, next_ping{};
 };
 
-/// One for each port. Its decisions depend on arguments only, so tests need no tracker.
+/// Responder of one port. Its decisions depend only on arguments, so tests need no tracker.
 class SlimeResponder {
  public:
   static constexpr std::size_t most_devices = 64;
 
-  /// `secret`: random in each run; ids of pings and the hash keys of unknown senders are made with
-  /// it.
+  /// `secret`: random in each run; used for ids of pings and for hashes of unknown senders.
   explicit SlimeResponder(const SipHashKey& secret);
 
   /// Judges one datagram. Call in the order of arrival.
   SlimeResult receive(const SlimeArrival& arrival);
-  /// Call about ten times a second. Sends heartbeats and pings.
+  /// Call about ten times a second. Queues the heartbeats and pings that are due.
   void tick(HostTime now);
-  /// The datagrams to send since the previous call.
+  /// Returns the datagrams to send since the previous call.
   std::vector<SlimeSending> take_sendings() { return std::exchange(sendings_, {}); }
 
-  /// nullptr: no device has this address.
+  /// Returns nullptr if no device has this address.
   const SlimeDevice* device_at(const NodeAddress& address) const;
 
  private:

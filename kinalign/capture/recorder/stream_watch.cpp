@@ -11,7 +11,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_sensors = 8;     // of one sender
+constexpr std::size_t most_sensors = 8;     // sensors of one sender
 constexpr std::size_t most_of_a_port = 64;  // sensors of one port whose sessions are stored
 
 template <class Refused>
@@ -19,8 +19,8 @@ std::uint64_t sum(const Refused& refused) {
   return std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
 }
 
-/// Refused messages and skipped bytes. The sum increases with each piece that cannot be read
-/// completely.
+/// Returns the number of refused messages and skipped bytes. This sum grows with each piece that
+/// has unreadable parts.
 template <class Counts>
 std::uint64_t trouble(const Counts& counts) {
   return sum(counts.refused) + counts.bytes_skipped;
@@ -45,8 +45,8 @@ StreamWatch::StreamWatch(Protocol protocol, bool datagrams, const std::string& s
       kinect.sender = sender;
       break;
     }
-    case Protocol::nodes:    // RecordedNodes decodes these
-    case Protocol::slimevr:  // SlimeResponder decodes these
+    case Protocol::nodes:    // RecordedNodes decodes the nodes' datagrams
+    case Protocol::slimevr:  // SlimeResponder decodes the trackers' datagrams
       break;
   }
 }
@@ -69,7 +69,7 @@ void StreamWatch::feed(Kinect& kinect, const Piece& piece, NewestKinectFrames& n
   kinect.messages.clear();
   kinect.pings.clear();
   kinect.decoder.feed(piece.bytes, kinect.messages);
-  // A datagram holds whole messages, so its end ends the last one.
+  // A datagram contains whole messages, so the last message ends with the datagram.
   if (kinect.datagrams) kinect.decoder.finish(kinect.messages);
   for (KinectMessage& message : kinect.messages) {
     if (const auto* ping = std::get_if<KinectPing>(&message)) kinect.pings.push_back(*ping);
@@ -107,7 +107,7 @@ void StreamWatch::count(Kinect& kinect, KinectFrame frame, NewestKinectFrames& n
                     [](const JoinedKinectFrame& one) { return one.whole; }));
 }
 
-// A piece counts as refused once, however many faults it has.
+// A piece with several faults counts as refused once.
 void StreamWatch::feed(std::string_view piece, HostTime arrival, NewestKinectFrames& newest) {
   std::visit(
       [&](auto& decoder) {
@@ -135,10 +135,10 @@ bool StreamWatch::has_overlap() const {
   return kinect != nullptr && !kinect->overlaps.empty();
 }
 
-// Each avatar has its own numbers; losses of all of them are added.
+// Each avatar has its own frame numbers. The losses of all avatars are added.
 SenderCounts StreamWatch::counts(const Noitom& noitom) {
   const NoitomCounts& counts = noitom.decoder.counts();
-  // The last frame is complete too, although no frame has followed it.
+  // The last frame is complete too, although the decoder waits for the frame after it.
   SenderCounts out{0, 0, counts.frames + (noitom.decoder.has_last() ? 1 : 0), {}, 0};
   for (const auto& [index, avatar] : noitom.decoder.avatars()) {
     out.order += avatar.by_index.counts();
@@ -153,8 +153,8 @@ SenderCounts StreamWatch::counts(const Xsens& xsens) {
   return out;
 }
 
-// Frames of ended sessions and stale messages count as late; parts that contradict each other as
-// refused.
+// Frames of ended sessions and outdated messages count as late. Frames whose parts contradict each
+// other count as refused.
 SenderCounts StreamWatch::counts(const Kinect& kinect) {
   SenderCounts out{0, 0, kinect.whole, {}, kinect.further_sensors};
   out.order.late = kinect.late;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts one sender's data during recording: frames, lost, late and duplicate ones by the sender's
-// own numbers, and data that cannot be read. The bytes are recorded in any case.
+// Counts one sender's data during recording: frames, unreadable data, and lost, late and duplicate
+// frames by the sender's own numbers. The recorded bytes do not depend on these counts.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -20,22 +20,24 @@
 
 namespace kinalign {
 
-/// The sessions of a port's Kinects, by sensor id, whichever sender brought them.
+/// The sessions of all Kinects of a port, by sensor id. A Kinect may use several senders in turn.
 using NewestKinectFrames = std::map<std::uint32_t, KinectSessions>;
 
-/// Decodes only as much as counting needs. What it says never changes what is recorded.
+/// Decodes only what the counts need. The result does not change what is recorded.
 class StreamWatch {
  public:
-  /// Protocols that are decoded elsewhere are not counted. `datagrams`: each piece is a datagram
-  /// with whole messages; otherwise pieces may end anywhere. `sender`: its name in findings.
+  /// A protocol that another class decodes is not counted here. `datagrams`: each piece is a
+  /// datagram with whole messages; otherwise a message may continue in the next piece. `sender`:
+  /// the sender's name in findings.
   explicit StreamWatch(Protocol protocol, bool datagrams = false, const std::string& sender = "");
 
   /// Decodes one piece. `newest`: the sessions of the port's Kinects. If a Kinect returns over a
-  /// new connection, its count continues, or it is recognised as restarted.
+  /// new connection, its count continues, or its restart is recognised.
   void feed(std::string_view piece, HostTime arrival, NewestKinectFrames& newest);
-  /// The pings of a Kinect's sender that the last piece completed.
+  /// The Kinect pings that ended in the last piece.
   std::span<const KinectPing> pings() const;
-  /// Whether the sender uses lines; pongs must use the same form.
+  /// Returns whether the sender uses the text form, one message per line. Pongs must have the same
+  /// form.
   bool speaks_lines() const;
   /// Returns whether another sender uses the same sensor id at the same time.
   bool has_overlap() const;
@@ -45,8 +47,8 @@ class StreamWatch {
   Findings findings(const std::string& name) const;
 
  private:
-  /// One of these per sender, by protocol. The vectors are members to keep their memory from piece
-  /// to piece.
+  /// The decoder of one sender; each protocol has one. The vectors are members, so that their
+  /// memory is reused.
   struct Noitom {
     NoitomReceiver decoder{NoitomParts::heads};
     std::vector<NoitomArrival> frames{};
@@ -61,9 +63,9 @@ class StreamWatch {
     std::vector<KinectMessage> messages{};
     std::map<std::uint32_t, KinectFrameJoiner> joiners{};  // by sensor id; most_sensors at most
     std::vector<JoinedKinectFrame> frames{};
-    // whole frames; messages of sensors beyond most_sensors
+    // number of whole frames, and of messages from sensors beyond most_sensors
     std::uint64_t whole = 0, further_sensors = 0;
-    std::uint64_t late = 0;                 // frames of a session that a newer one has ended
+    std::uint64_t late = 0;                 // frames of a session that is over
     std::vector<KinectOverlap> overlaps{};  // found by frames of this sender
     std::vector<KinectPing> pings{};
     bool datagrams = false;
@@ -73,7 +75,7 @@ class StreamWatch {
     std::span<const std::uint8_t> bytes;
     HostTime arrival;
   };
-  /// One function for each protocol. Only a Kinect's uses `newest`.
+  /// One function for each protocol. Only the function for Kinects uses `newest`.
   static void feed(Noitom& noitom, const Piece& piece, NewestKinectFrames& newest);
   static void feed(Xsens& xsens, const Piece& piece, NewestKinectFrames& newest);
   static void feed(Kinect& kinect, const Piece& piece, NewestKinectFrames& newest);
