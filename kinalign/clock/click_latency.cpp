@@ -13,17 +13,17 @@ namespace {
 constexpr double normal_from_mad = 1.4826;
 constexpr double outside = 0.05;
 
-/// The median of values in rising order.
+/// Returns the median of values in rising order.
 Duration median_of(const std::vector<Duration>& sorted) {
   const std::size_t half = sorted.size() / 2;
   return sorted.size() % 2 == 1 ? sorted[half]
                                 : sorted[half - 1] + (sorted[half] - sorted[half - 1]) / 2;
 }
 
-/// Number of values that may lie outside of the interval at each end, by the binomial distribution
-/// of n fair coins.
+/// Number of values that may be outside the interval at each end, from the binomial distribution
+/// for n fair coins.
 std::size_t left_out(std::size_t n) {
-  double probability = std::pow(0.5, static_cast<double>(n));  // probability of no head
+  double probability = std::pow(0.5, static_cast<double>(n));  // probability of tails only
   double below = 2.0 * probability;
   std::size_t k = 0;
   while (below <= outside) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A time on the host's axis, and how certain it is.
+// A time on the host's time axis, with the certainty of that time.
 #pragma once
 
 #include "kinalign/clock/assumptions.h"
@@ -11,26 +11,29 @@
 namespace kinalign {
 
 enum class Certainty : std::uint8_t {
-  certified,  // the truth lies in the interval, as long as the assumptions hold
-  one_sided,  // too few exchanges: one end is open, or the interval is not certified yet
+  certified,  // the true time lies in the interval if the assumptions hold
+  one_sided,  // too few exchanges: one end is unknown, or the interval is not certified yet
   doubtful    // the exchanges around this time contradict the assumptions
 };
 
-/// True if a reading was surely taken after the counter stepped. `earliest`: earliest time that the
-/// model gives to the reading; `arrival`: newest arrival when the reading was looked up. The model
-/// puts a reading from before the step either before `from` or, while `from` has not come yet, into
-/// the future. Example: a counter that stepped back by 20 ms at 30 s repeats its reading of that
-/// moment at 30.02 s, which is `from`. If it stepped back by an hour, such a reading seems to lie
-/// 59 minutes ahead. HostTime::min(): the counter has not stepped.
+/// Returns whether a reading was certainly taken after the counter stepped. `earliest`: earliest
+/// time that the model gives for the reading. `arrival`: newest arrival when the reading was
+/// converted. `from`: first time at which no reading is ambiguous; HostTime::min() if the counter
+/// has not stepped.
+///
+/// The model gives a reading from before the step a time before `from`, or a time in the future.
+/// Example: the counter steps back by 20 ms at 30 s. It shows the reading of that moment again at
+/// 30.02 s, which is `from`. If it steps back by an hour, that reading seems to be 59 minutes in
+/// the future.
 constexpr bool is_behind_step(HostTime earliest, HostTime from, HostTime arrival) {
   return from <= earliest && (earliest <= arrival || from <= arrival);
 }
 
 struct ClockStamp {
   HostTime time{};                           // the likeliest time
-  std::optional<HostTime> earliest, latest;  // ends of the interval; absent: that end is open
+  std::optional<HostTime> earliest, latest;  // ends of the interval; absent: not known
   Certainty certainty = Certainty::one_sided;
-  Assumptions assumptions;  // of the certificate
+  Assumptions assumptions;  // assumptions of the certificate
 };
 
 }  // namespace kinalign

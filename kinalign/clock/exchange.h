@@ -9,19 +9,19 @@
 
 namespace kinalign {
 
-/// Names one boot of a node, within which its counter runs on. It is the boot id, or a number that
-/// the caller chose where a node restarted without drawing a new id.
+/// Identifies one boot of a node, within which its counter is continuous. It is the boot id. If a
+/// node restarts without a new id, the caller chooses another number.
 using BootKey = std::uint64_t;
 
-/// A frame that arrived, with the echo in it.
+/// A frame that has arrived, with the echo that it contains.
 struct Exchange {
   struct Echo {
-    NodeTime n_rx{};  // T4 of RFC 5905: the reply reached the node
+    NodeTime n_rx{};  // T4 of RFC 5905: the reply arrived at the node
     HostTime h_tx{};  // T3: the host sent the reply
   };
   BootKey boot = 0;
   NodeTime n_tx{};  // T1: the node sent the frame
-  HostTime h_rx{};  // T2: the frame reached the host
+  HostTime h_rx{};  // T2: the frame arrived at the host
   std::optional<Echo> echo;
 };
 

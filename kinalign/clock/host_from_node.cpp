@@ -10,8 +10,8 @@ namespace kinalign {
 
 namespace {
 
-/// In whole nanoseconds; each end is rounded outwards. An offset above 104 days does not fit into a
-/// double.
+/// Offsets in whole nanoseconds. Each end is rounded outwards. A double can't hold an offset above
+/// 104 days to a nanosecond.
 struct Offset {
   Duration likeliest{}, least{}, greatest{};
 };
@@ -20,8 +20,8 @@ double between(Duration a, Duration b, double share) {
   return static_cast<double>((b - a).count()) * share;
 }
 
-/// Interpolates linearly between knots. Outside of them, the interval widens at the greatest rate
-/// of the assumptions.
+/// Interpolates linearly between knots. Before the first and after the last knot, the interval
+/// widens at the greatest assumed rate.
 Offset offset_at(const ClockPieceModel& piece, NodeTime n) {
   const auto behind =
       std::upper_bound(piece.knots.begin(), piece.knots.end(), n,
@@ -51,7 +51,7 @@ bool is_in(std::span<const DoubtfulStretch> doubtful, HostTime h) {
   return behind != doubtful.begin() && h <= (behind - 1)->end;
 }
 
-/// Looks up the piece by the arrival, since a reading may occur in several pieces.
+/// The arrival selects the piece, since a reading may occur in several pieces.
 std::optional<ClockStamp> host_from_node(const HostFromNode& model, BootKey boot, NodeTime n,
                                          HostTime h_rx) {
   const auto piece = std::find_if(model.pieces.begin(), model.pieces.end(), [&](const auto& p) {

@@ -13,7 +13,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-/// Adds a point at the right end and removes the corners that no longer are convex.
+/// Adds a point at the right end and removes corners that are no longer convex.
 void LiftedHull::append(double s, double lifted) {
   if (!corners_.empty() && corners_.back().s == s) {
     if (lifted >= corners_.back().lifted) return;
@@ -47,7 +47,7 @@ LiftedHull::Support LiftedHull::support(const Corner& corner, double t, double s
   return {corner.lifted - rho_ * t * (corner.s - t / 2.0) - slope * tau, tau};
 }
 
-/// The corner at which a line of this slope touches the hull in the lifted plane.
+/// Returns the corner at which a line of this slope touches the hull of the lifted points.
 std::vector<LiftedHull::Corner>::const_iterator LiftedHull::corner_for(double slope) const {
   return std::partition_point(corners_.begin(), corners_.end() - 1,
                               [slope](const Corner& c) { return c.slope < slope; });
@@ -63,7 +63,7 @@ void LiftedHull::bounds_at(double t, double first, double step, std::span<double
   auto corner = corner_for(first + rho_ * t);
   for (std::size_t i = 0; i < bounds.size(); ++i) {
     const double slope = first + step * static_cast<double>(i);
-    // Ends at the last corner, whose slope is infinite.
+    // The loop ends at the last corner at the latest, because its slope is infinite.
     while (corner->slope < slope + rho_ * t) ++corner;
     bounds[i] = support(*corner, t, slope).bound;
   }
@@ -73,7 +73,7 @@ LiftedHull::Peak LiftedHull::peak(double t) const {
   assert(!corners_.empty());
   const auto behind = std::partition_point(corners_.begin(), corners_.end() - 1,
                                            [t](const Corner& c) { return c.s < t; });
-  // The time t lies after the last corner, where the bound grows without limit.
+  // No corner lies after t, so the bound grows without limit.
   if (behind->s < t) return {infinite, infinite};
   if (behind == corners_.begin()) {
     return {behind->s > t ? infinite : support(*behind, t, 0.0).bound, -infinite};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps upper bounds on a function x(s), so that at any s the few decisive ones are found quickly.
+// Stores upper bounds on a function x(s) so that the few bounds that matter at any s are found
+// quickly.
 #pragma once
 
 #include <cstddef>
@@ -9,30 +10,30 @@
 
 namespace kinalign {
 
-/// The lower convex hull of points (s, bound + rho s^2 / 2). If |x''| <= rho, a bound x(s_k) <= u_k
-/// implies for a = x(t) and b = x'(t) that a + b (s_k - t) <= u_k + rho (s_k - t)^2 / 2. This right
-/// side differs from the lifted point only by a term that is linear in s_k. So for every t only
-/// corners of this one hull can be active. All values are in seconds, from an origin near the data:
-/// doubles keep a nanosecond over 1000 hours.
+/// The lower convex hull of the points (s, bound + rho s^2 / 2). Let |x''| <= rho, a = x(t) and b =
+/// x'(t). Then a bound x(s_k) <= u_k implies a + b (s_k - t) <= u_k + rho (s_k - t)^2 / 2. This
+/// right side equals the hull's point plus a term that is linear in s_k. For every t, only corners
+/// of this hull therefore limit a. All values are in seconds from an origin near the data, so
+/// doubles are exact to a nanosecond over 1000 hours.
 class LiftedHull {
  public:
-  /// Keeps the newest `corners` corners. With fewer corners the bounds are looser but still true.
+  /// Keeps the newest `corners` corners. With fewer corners the bounds are wider but still correct.
   static constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
   explicit LiftedHull(double rho, std::size_t corners = all) : rho_(rho), most_(corners) {}
 
-  /// Adds x(s) <= bound. Points may come in any order; a late one rebuilds the hull from there on.
+  /// Adds x(s) <= bound in any order. A late point rebuilds the hull from that point on.
   void add(double s, double bound);
 
-  /// The bound on a = x(t) for a slope b = x'(t), and tau = s - t of the corner that gives it. The
-  /// derivative of the bound by b is -tau.
+  /// The bound on a = x(t) for the slope b = x'(t), and tau = s - t of the corner that gives the
+  /// bound. The derivative of the bound with respect to b is -tau.
   struct Support {
     double bound = 0.0;
     double tau = 0.0;
   };
   Support at(double t, double slope) const;
-  /// The bounds for slopes first, first + step, ..., one for each element of `bounds`.
+  /// Computes the bounds for the slopes first, first + step, ..., one for each element of `bounds`.
   void bounds_at(double t, double first, double step, std::span<double> bounds) const;
-  /// The greatest `at(t, slope).bound` over all slopes, and its slope.
+  /// The greatest value of at(t, slope).bound over all slopes, and the slope that gives it.
   struct Peak {
     double bound = 0.0;
     double slope = 0.0;
@@ -41,8 +42,8 @@ class LiftedHull {
 
   bool empty() const { return corners_.empty(); }
   std::size_t size() const { return corners_.size(); }
-  /// The same corners with another rho. Points above the old hull are lost, so the bounds may be
-  /// looser.
+  /// Returns the hull of the same corners with another rho. Points above the old hull are not
+  /// stored, so the new bounds may be wider.
   LiftedHull relifted(double rho) const;
 
  private:

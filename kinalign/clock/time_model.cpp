@@ -17,7 +17,7 @@ const TimeModelPiece& piece_at(const TimeModel& model, Time stamp) {
   return behind == model.pieces.begin() ? model.pieces.front() : *(behind - 1);
 }
 
-/// ns as a double, because the difference of two stamps may be longer than a Duration.
+/// Returns ns as a double, because the difference of two stamps may be longer than a Duration.
 double since(Time begin, Time stamp) {
   return stamp < begin ? -static_cast<double>(step_between(stamp, begin))
                        : static_cast<double>(step_between(begin, stamp));

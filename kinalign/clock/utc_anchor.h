@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// UTC for stamps on the raw axis, from pairs of readings that are logged while recording.
+// Converts stamps on the host's raw clock to UTC, using pairs of readings that are stored during
+// recording.
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -18,21 +19,21 @@ struct ClockPair {
 
 inline constexpr double fastest_slew = 0.1;  // chronyd slews by up to 83,333 ppm
 
-/// A step of the wall clock between two pairs.
+/// A step of the wall clock between two pairs of readings.
 struct WallClockStep {
   HostTime at{};  // time of the later pair
   Duration by{};
 };
 
-/// A single offset for a whole recording, so that durations are always those of the raw axis. The
-/// wall clock only gives the date, whatever happens to it later. The error is the crystal's drift,
-/// some 20 ppm.
+/// One offset for a whole recording, so that durations are those of the raw clock. The wall clock
+/// only gives the date, and later changes of the wall clock have no effect. The error is the drift
+/// of the host's crystal, about 20 ppm.
 struct UtcAnchor {
   Duration utc_minus_raw{};          // from the first pair
-  std::vector<WallClockStep> steps;  // changes faster than any slew and above a millisecond
+  std::vector<WallClockStep> steps;  // changes above a millisecond that no slew explains
 };
 
-/// Pairs in the order of reading; absent if there is none.
+/// Pairs must be in the order of reading. Absent if there is no pair.
 std::optional<UtcAnchor> utc_anchor(std::span<const ClockPair> pairs);
 
 }  // namespace kinalign

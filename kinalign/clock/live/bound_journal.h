@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps the bounds of a piece's latest exchanges, in their order. After a step of the counter they
-// show since when stamps are in doubt.
+// Stores the newest bounds of a piece in their order of arrival. After a step of the counter, they
+// tell from which time on stamps are doubtful.
 #pragma once
 
 #include "kinalign/clock/bound.h"
@@ -11,12 +11,12 @@
 
 namespace kinalign {
 
-/// A ring of fixed size: a node's clock must not grow with the length of a recording.
+/// A ring buffer of fixed size, so that memory does not grow with the length of a recording.
 class BoundJournal {
  public:
   void add(const Bound& bound);
   std::size_t size() const { return size_; }
-  Bound newest(std::size_t i) const;  // 0: the latest one
+  Bound newest(std::size_t i) const;  // 0: the newest bound
 
  private:
   static constexpr std::size_t capacity = 1024;
@@ -24,7 +24,7 @@ class BoundJournal {
     double s, x;
   };
   std::array<Place, capacity> places_{};
-  /// The side of each bound is kept apart, because a bool next to two doubles would take eight
+  /// The side of each bound is stored separately. A bool next to two doubles would take eight
   /// bytes.
   std::bitset<capacity> below_;
   std::size_t next_ = 0, size_ = 0;

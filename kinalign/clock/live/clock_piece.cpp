@@ -9,15 +9,16 @@ namespace kinalign {
 
 namespace {
 
-// Share of the round trip. Half of the round trip is the least delay.
+// Share of the round trip. A step of this size stays within the certificate, since half of the
+// round trip is the least delay.
 constexpr double harmless_share = 0.4;
 constexpr Duration before_a_slip = Violators::wait;
-// In lifted coordinates, doubles keep 11 ns over a year and 1 us over three years, for a clock with
-// a crystal's curvature.
+// Lifted coordinates (lifted_hull.h) of a clock with a crystal's curvature. Doubles are exact to 11
+// ns over a year and to 1 us over three years.
 constexpr double longest_piece_s = 1e8;
 constexpr Duration oldest_reading = std::chrono::seconds(10);
 constexpr int looked_back = 12;  // number of windows
-/// The range of x is computed again after so many seconds, or after so many bounds (seldom).
+/// The range of x is computed again after stale_s seconds or after `seldom` bounds.
 constexpr double stale_s = 0.5;
 constexpr std::uint32_t seldom = 4;
 
@@ -40,8 +41,8 @@ void ClockPiece::ask(double s) {
   unseen_ = 0;
 }
 
-/// How far a bound lies beyond the range that the certificate allows, s; 0 or less: inside. It uses
-/// the last range computed, widened by the time since then, unless bounds came that narrow it.
+/// Returns how far a bound lies beyond the range of the certificate, s; 0 or less: inside. The last
+/// computed range is used, widened by the time since then, unless later bounds would narrow it.
 double ClockPiece::violation(const Bound& e) {
   if (!certificate_.bounded()) return 0.0;
   if (!range_ || e.s - range_at_ > stale_s || unseen_ >= seldom) ask(e.s);
@@ -59,8 +60,8 @@ double ClockPiece::violation(const Bound& e) {
   return e.side == Side::above ? low - e.x : e.x - high;
 }
 
-// The floors need the slope as it was before this bound, and must know of a change of route before
-// they take the bound.
+// The floors need the slope without this bound. They must know of a change of route before the
+// bound is added.
 void ClockPiece::add(const Bound& b) {
   const SlopeBelief slope = estimate_.slope();
   const std::uint32_t changes = estimate_.changes();
@@ -71,16 +72,16 @@ void ClockPiece::add(const Bound& b) {
   journal_.add(b);
 }
 
-// Order of the checks: a bound outside the certificate waits among the violators. Then a
-// contradiction or a violator that nothing excluded ends the piece. Any other bound is taken and
-// may show a small step.
+// A bound outside the certificate is stored as a violator. The piece ends if bounds contradict each
+// other, or if a violator is not refuted in time. Any other bound is added and may show a small
+// step.
 ClockPiece::Verdict ClockPiece::push(const Crossing& crossing) {
   const Bound e = bound(crossing);
   newest_arrival_ = crossing.arrival;
   ++crossings_;
   if (std::abs(e.s) > longest_piece_s || std::abs(e.x) > longest_piece_s) {
     amount_ = std::abs(e.x);
-    return Verdict::violator;  // no counter that starts to count gives such a reading
+    return Verdict::violator;  // no counter that has just started gives such a reading
   }
   amount_ = violation(e);
   if (amount_ > Violators::tolerated_s) {
@@ -88,7 +89,7 @@ ClockPiece::Verdict ClockPiece::push(const Crossing& crossing) {
     return violators_.full() ? broken(End::violators) : Verdict::violator;
   }
   if (contradicted_) {
-    amount_ = 0.0;  // it is unknown which of the bounds are wrong
+    amount_ = 0.0;  // the wrong bounds are not known
     return broken(End::contradiction);
   }
   violators_.drop_excluded_by(e, assumptions().rate);
@@ -105,7 +106,8 @@ ClockPiece::Verdict ClockPiece::broken(End why) {
   return Verdict::broken;
 }
 
-/// Looks for a step below the least delay: the truth is then still within the certificate.
+/// Looks for a step smaller than the least delay. The true offset is then still within the
+/// certificate.
 std::optional<ClockPiece::Verdict> ClockPiece::slipped() {
   if (floors_.windows() == windows_judged_ && estimate_.changes() == routes_judged_) return {};
   if (const auto by = narrowed()) {
@@ -121,9 +123,9 @@ std::optional<ClockPiece::Verdict> ClockPiece::slipped() {
   return Verdict::slipped;
 }
 
-/// Amount by which the interval is narrower than the shortest possible round trip. Bounds from
-/// before and after a slip cause that. The place where it shows best depends on the time of the
-/// slip, so several windows are checked. Called once a window.
+/// Returns by how much the interval is narrower than the shortest possible round trip. This happens
+/// if bounds from before and after a slip are combined. The effect depends on the time of the slip,
+/// so several windows are checked. Computed once per window.
 std::optional<double> ClockPiece::narrowed() {
   if (floors_.windows() == windows_judged_ || !certificate_.bounded()) return std::nullopt;
   const double least = floors_.least_width(), now = journal_.newest(0).s;
@@ -132,7 +134,7 @@ std::optional<double> ClockPiece::narrowed() {
     const double back = (window + 0.5) * FloorLog::window_s;
     const auto range = certificate_.at(std::max(now - back, 0.0));
     if (!range) {
-      contradicted_ = true;  // more than a slip: reported with the next bound
+      contradicted_ = true;  // worse than a slip; reported with the next bound
       return std::nullopt;
     }
     left = std::min(left, range->high - range->low);
@@ -140,7 +142,7 @@ std::optional<double> ClockPiece::narrowed() {
   return left < least ? std::optional(least - left) : std::nullopt;
 }
 
-/// Step of the counter at the latest change of route; reported once for each change.
+/// Returns the step of the counter at the newest change of route. Each change is reported once.
 std::optional<double> ClockPiece::stepped_with_route() {
   const auto& change = estimate_.last_change();
   if (!change || !change->step || estimate_.changes() == routes_judged_) return std::nullopt;
@@ -148,8 +150,8 @@ std::optional<double> ClockPiece::stepped_with_route() {
   return change->step;
 }
 
-/// Step between windows; computed once a window. After a recent change of route, windows on both
-/// sides can't be compared.
+/// Returns the step between windows, computed once per window. If the route changed recently,
+/// windows before and after the change can't be compared.
 std::optional<double> ClockPiece::stepped_between_windows() {
   if (floors_.windows() == windows_judged_) return std::nullopt;
   windows_judged_ = floors_.windows();
@@ -164,8 +166,8 @@ std::optional<HostTime> ClockPiece::step_pending_since() const {
   return std::max(begin_, doubt_of_violators());
 }
 
-/// Arrival of the last crossing that contradicts one of the violators: until then the counter had
-/// not stepped. The result is at least five seconds before the first violator.
+/// Returns the arrival of the last crossing that contradicts one of the violators. At that time the
+/// counter had not stepped. The result is at least five seconds before the first violator.
 HostTime ClockPiece::doubt_of_violators() const {
   HostTime since = violators_.pending()[0].crossing.arrival - Violators::wait;
   for (std::size_t i = 0; i < journal_.size(); ++i) {
@@ -190,24 +192,25 @@ HostTime ClockPiece::next_begins() const {
   return end_ == End::violators ? violators_.pending()[0].crossing.arrival : newest_arrival_;
 }
 
-/// Approximate arrival on the host of an event at s, apart from delays.
+/// Returns the approximate host time at s, ignoring delays.
 HostTime ClockPiece::about(double s) const {
   std::size_t i = 0;
   while (i + 1 < journal_.size() && journal_.newest(i).s > s) ++i;
   return host_time({s, journal_.newest(i).x});
 }
 
-/// True if all that is known fits a counter without a step whose rate changes as fast as a
-/// crystal's can. The two cases can't be told apart then, and the next piece allows for both.
+/// Returns whether all bounds also fit a counter without a step whose rate changes as fast as a
+/// crystal's rate can change. The two cases can't be distinguished then, so the next piece allows
+/// for both.
 bool ClockPiece::may_bend() const {
   Certificate bent = certificate_.relaxed(most_curvature);
   for (const Violator& v : violators_.pending()) bent.add(v.bound);
   return bent.at(journal_.newest(0).s).has_value();
 }
 
-/// The piece after a small step. The exact time of the step is unknown, so bounds from before now
-/// don't enter its certificate. The estimate has begun anew with the change of route, or it begins
-/// with the last window.
+/// Returns the piece after a small step. The exact time of the step is unknown, so its certificate
+/// contains no earlier bounds. The estimate already began anew with the change of route, or it
+/// begins with the last window.
 ClockPiece ClockPiece::next_after_slip(const Assumptions& assumed, const SlopeBelief& prior) const {
   ClockPiece next = *this;
   next.begin_ = newest_arrival_;
@@ -229,8 +232,8 @@ ClockPiece ClockPiece::next_after_slip(const Assumptions& assumed, const SlopeBe
   return next;
 }
 
-/// The greatest possible step back of the counter: the excess over the certificate plus the width
-/// of the interval.
+/// Returns the greatest possible backward step of the counter: the distance to the certificate plus
+/// the width of the interval.
 Duration ClockPiece::greatest_step_back() const {
   if (end_ == End::none) return Duration{0};
   const auto violators = violators_.pending();
@@ -241,8 +244,8 @@ Duration ClockPiece::greatest_step_back() const {
   return rounded_up(std::min(std::abs(amount_) + width, seconds(oldest_reading)));
 }
 
-/// The piece after a break: it begins with the violators if they caused the break, otherwise with
-/// the newest bound.
+/// Returns the piece after a break. It begins with the violators if they caused the break,
+/// otherwise with the newest bound.
 ClockPiece ClockPiece::next_behind(const Assumptions& assumed, const SlopeBelief& prior) const {
   if (end_ == End::slip_with_route || end_ == End::slip_between_windows) {
     return next_after_slip(assumed, prior);
@@ -261,13 +264,13 @@ ClockPiece ClockPiece::next_behind(const Assumptions& assumed, const SlopeBelief
   return next;
 }
 
-/// A counter that stepped ahead shows no reading twice: the new piece puts old readings before the
-/// step. A counter that stepped back shows some readings twice.
+/// A counter that stepped ahead shows no reading twice. The new piece gives older readings times
+/// before the step. A counter that stepped back shows some readings twice.
 ClockPiece ClockPiece::next_piece() const {
   Assumptions assumed = assumptions();
   if (end_ != End::none && may_bend()) assumed.curvature = most_curvature;
   ClockPiece next = next_behind(assumed, estimate_.slope().after_a_break());
-  // Readings that the counter showed before it stepped back must not be certified in the new piece.
+  // Readings from before a backward step must not be certified in the new piece.
   next.certified_from_ = std::max(certified_from_, newest_arrival_ + greatest_step_back());
   return next;
 }
@@ -282,8 +285,8 @@ std::optional<ClockStamp> ClockPiece::at(NodeTime n) {
   double x = middle->value;
   ask(s);
   if (const auto& range = range_) {
-    // The likeliest offset may lie outside of what is possible, for example after a wrong guess
-    // about a route.
+    // The likeliest offset may be outside the possible range, for example if a route was guessed
+    // wrongly.
     x = std::clamp(x, range->low, range->high);
     stamp.earliest = origin_.host + rounded_down(s + range->low);
     stamp.latest = origin_.host + rounded_up(s + range->high + counter_resolution_s);

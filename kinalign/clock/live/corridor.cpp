@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// g(b) = above(b) - below(b) is concave and piecewise linear in the slope b. Its peak is found by
-// intersecting tangents, the ends of g >= 0 by Newton's steps from outside. Both need finitely many
-// steps and are exact.
+// Let g(b) = above(b) - below(b) be the width for the slope b. g is concave and piecewise linear.
+// The peak of g is found by intersecting tangents, and the ends of the range g >= 0 by Newton steps
+// from outside. Both methods are exact after finitely many steps.
 #include "kinalign/clock/live/corridor.h"
 
 #include <algorithm>
@@ -11,21 +11,21 @@ namespace kinalign {
 
 namespace {
 
-/// g and its derivative at a slope.
+/// The width g and its derivative at a slope.
 struct Gap {
   CorridorLine line;
   double rise = 0.0;
 };
 
-// The lower bounds are stored mirrored, so their slope and their bound change sign.
+// The lower bounds are stored with changed sign, so their slope and their bound change sign here.
 Gap gap_at(const Corridor& corridor, double t, double slope) {
   const auto up = corridor.above.at(t, slope);
   const auto down = corridor.below.at(t, -slope);
   return {{up.bound, -down.bound, slope}, down.tau - up.tau};
 }
 
-/// The slope at which g reaches zero, searched from a slope outside towards the peak. Rounding
-/// errors leave the result outside.
+/// Returns the slope at which g becomes zero. The search begins at a slope `outside` and moves
+/// towards the peak. With rounding errors the result stays outside.
 double edge_from(const Corridor& corridor, double t, double outside) {
   for (;;) {
     const Gap gap = gap_at(corridor, t, outside);
@@ -39,8 +39,8 @@ double edge_from(const Corridor& corridor, double t, double outside) {
 
 }  // namespace
 
-// If g falls from the left end on, or still rises at the right end, its peak is that end. Otherwise
-// the peak lies between, and the tangents at both sides close in on it.
+// If g falls from the left end on or rises up to the right end, this end is the peak. Otherwise the
+// peak is between the ends, and tangents from both sides approach it.
 CorridorLine widest_line(const Corridor& corridor, double t, double beta) {
   assert(!corridor.above.empty() && !corridor.below.empty());
   Gap left = gap_at(corridor, t, -beta);
@@ -48,7 +48,7 @@ CorridorLine widest_line(const Corridor& corridor, double t, double beta) {
   Gap right = gap_at(corridor, t, beta);
   if (right.rise >= 0.0) return right.line;
   for (;;) {
-    // The tangents intersect here; no point of g lies above them.
+    // The tangents intersect at this slope. No point of g is above the tangents.
     const double slope = (right.line.width() - left.line.width() + left.rise * left.line.slope -
                           right.rise * right.line.slope) /
                          (left.rise - right.rise);
@@ -66,8 +66,8 @@ std::optional<ValueRange> value_range(const Corridor& corridor, double t, double
   ValueRange range;
   range.least_slope = std::min(edge_from(corridor, t, -beta), widest.slope);
   range.greatest_slope = std::max(edge_from(corridor, t, beta), widest.slope);
-  // The end of the range for a slope is concave in the slope: its maximum lies at its own peak or
-  // at an edge.
+  // The limit of the range is concave in the slope. Its maximum is therefore at its own peak or at
+  // an edge.
   const auto greatest = [&](const LiftedHull& hull, double least, double most) {
     const auto peak = hull.peak(t);
     return hull.at(t, std::clamp(peak.slope, least, most)).bound;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Upper and lower bounds, and the values at t that they leave for a function.
+// Upper and lower bounds on a function, and the values at t that they allow.
 #pragma once
 
 #include "kinalign/clock/bound.h"
@@ -9,7 +9,7 @@
 
 namespace kinalign {
 
-/// Hulls of the bounds on x(s). The lower bounds are a hull of -x.
+/// Hulls of the bounds on x(s). `below` contains the lower bounds as upper bounds on -x.
 struct Corridor {
   explicit Corridor(double rho, std::size_t corners = LiftedHull::all)
       : above(rho, corners), below(rho, corners) {}
@@ -30,7 +30,8 @@ struct CorridorLine {
   double middle() const { return (above + below) / 2.0; }
 };
 
-/// The slope in [-beta, beta] with the widest range of a. If the width is negative, no line fits.
+/// Returns the line with a slope in [-beta, beta] for which the range of a is widest. If its width
+/// is negative, no line fits.
 CorridorLine widest_line(const Corridor& corridor, double t, double beta);
 
 struct ValueRange {
@@ -38,8 +39,8 @@ struct ValueRange {
   double least_slope = 0.0, greatest_slope = 0.0;
 };
 
-/// All values of x(t) for slopes in [-beta, beta]; `widest` comes from widest_line(). Absent if
-/// bounds contradict each other. Needs a bound of each kind.
+/// Returns the range of x(t) for slopes in [-beta, beta]. `widest` is the result of widest_line().
+/// Absent if bounds contradict each other. Needs a bound of each kind.
 std::optional<ValueRange> value_range(const Corridor& corridor, double t, double beta,
                                       const CorridorLine& widest);
 

@@ -10,11 +10,11 @@ namespace kinalign {
 namespace {
 
 constexpr double remembered_s = 100.0;
-constexpr std::size_t nearest = 6;  // number of gaps between points that a density is computed from
+constexpr std::size_t nearest = 6;  // number of gaps between bounds that give a density
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double resolution_s = 1e-6;
 
-// Class 0: below 1 us; class i: from 2^(i-1) us on. The last class has no upper limit.
+// Class 0: below 1 us. Class i: from 2^(i-1) us. The last class has no upper limit.
 std::size_t class_of(double excess) {
   if (excess < resolution_s) return 0;
   return std::min<std::size_t>(23, 1 + static_cast<std::size_t>(std::ilogb(excess / resolution_s)));
@@ -22,8 +22,8 @@ std::size_t class_of(double excess) {
 
 }  // namespace
 
-// k points within a distance d from the lowest ones have a density of k / d. Only the nearest few
-// count, because the density falls with the distance.
+// If k delays lie within a distance d above the lowest delay, the density is k / d. Only the lowest
+// delays are used, because the density falls with the distance.
 double density_above(std::span<double> excess) {
   if (excess.size() < 2) return 0.0;
   const std::size_t k = std::min(nearest, excess.size() - 1);
@@ -56,7 +56,8 @@ void Floor::add(OffsetBound bound, const FloorLine& line) {
   hull_.add(bound.s, bound.x);
 }
 
-/// Replaces the worst point of a full set: an old one, or else the one farthest above the floor.
+/// Replaces a bound of a full set: an old bound if there is one, otherwise the highest above the
+/// floor.
 void Floor::keep_low(OffsetBound bound, const FloorLine& line) {
   if (lows_ < low_.size()) {
     low_[lows_++] = bound;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Estimates the least delay of one direction of a route, from the fastest packets.
+// Estimates the floor of one direction of a route: the least delay, known from the fastest packets.
 #pragma once
 
 #include "kinalign/clock/bound.h"
@@ -12,7 +12,8 @@
 
 namespace kinalign {
 
-/// A straight line below the bounds of one direction: the bound of a packet with the least delay.
+/// A straight line below the bounds of one direction. A packet with the least delay gives a bound
+/// on the line.
 struct FloorLine {
   double s = 0.0, x = 0.0, slope = 0.0;
 
@@ -20,17 +21,17 @@ struct FloorLine {
   double excess(OffsetBound bound) const { return bound.x - at(bound.s); }
 };
 
-/// Density of bounds just above a floor, in points per second of delay, from the nearest few of
-/// these delays. Reorders `excess`. 0 for fewer than two.
+/// Density of bounds just above a floor, in bounds per second of delay, from the smallest delays in
+/// `excess`. Reorders `excess`. 0 for fewer than two delays.
 double density_above(std::span<double> excess);
 
-/// Histogram of the delays of a direction above its floor: classes grow by a factor of two, from 1
-/// us on.
+/// Histogram of the delays of one direction above its floor. Each class is twice as wide as the one
+/// before, beginning with 1 us.
 class ExcessCounts {
  public:
   void add(double excess);
   std::uint64_t total() const { return total_; }
-  /// Number of delays above `excess`, counted in whole classes, so at least the true number.
+  /// Number of delays above `excess`. Whole classes are counted, so the result may be too high.
   std::uint64_t above(double excess) const;
   /// The median of the delays, rounded up to a whole class.
   double median() const;
@@ -40,15 +41,15 @@ class ExcessCounts {
   std::uint64_t total_ = 0;
 };
 
-/// The bounds of one direction for as long as its floor does not change.
+/// The bounds of one direction while its floor does not change.
 class Floor {
  public:
   explicit Floor(std::size_t corners) : hull_(usual_curvature, corners) {}
 
   void add(OffsetBound bound, const FloorLine& line);
 
-  /// Density just above `line`, in points per second of delay: it tells how well the floor is
-  /// known. 0 for fewer than two points.
+  /// Returns the density of bounds just above `line`, in bounds per second of delay. A high density
+  /// means that the floor is well known. 0 for fewer than two bounds.
   double density(const FloorLine& line) const;
   const LiftedHull& hull() const { return hull_; }
   const ExcessCounts& counts() const { return counts_; }
@@ -56,12 +57,12 @@ class Floor {
  private:
   void keep_low(OffsetBound bound, const FloorLine& line);
 
-  /// The usual |x''|, not the greatest possible. With 1e-8 / s the error of each simulated link is
-  /// the smallest, or within 15 % of it (docs/clock.md).
+  /// The usual |x''|, not the greatest possible one. With 1e-8 / s the error of each simulated link
+  /// is the least or within 15 % of the least (docs/clock.md).
   static constexpr double usual_curvature = 1e-8;
   LiftedHull hull_;
   ExcessCounts counts_;
-  std::array<OffsetBound, 12> low_{};  // points nearest to the floor in the last 100 s
+  std::array<OffsetBound, 12> low_{};  // lowest bounds of the last 100 s
   std::size_t lows_ = 0;
 };
 

@@ -15,27 +15,27 @@ constexpr double sure_deviations = 5.0;
 constexpr double alike_deviations = 4.0;
 constexpr double slope_slack = 5e-6;
 constexpr double agreeing_share = 0.05, agreeing_gaps = 3.0;
-// Number of round trips that must be alike, number of those that may be too short, and the margin
-// below them. With these values, one of 460 simulated recordings with valid assumptions seemed to
-// slip; there a route became shorter than ever before.
+// The least width needs `alike` similar round trips; up to `most_too_short` shorter ones are
+// ignored. With these values, one of 460 simulated recordings with valid assumptions wrongly showed
+// a slip. In that recording a route became shorter than ever before.
 constexpr std::size_t alike = 3, most_too_short = 2;
 constexpr double wander_s = 20e-6;  // variation of real floors, caused by schedulers and caches
 constexpr double narrow_share = 0.2, narrow_gaps = 2.0, narrow_spreads = 3.0;
 constexpr std::uint64_t enough_pairs = 4;
-constexpr double row_s = 1.5 * FloorLog::window_s;  // greatest distance of consecutive windows
+constexpr double row_s = 1.5 * FloorLog::window_s;  // greatest distance of neighbouring windows
 
 bool agree(double least, double most, double gap) {
   return most - least <= agreeing_share * least + agreeing_gaps * gap;
 }
 
-/// Lower limit for the width of an interval, s, for packets with this round trip.
+/// Returns the least possible width of an interval, s, for packets with this round trip.
 double width(double round_trip, double gap, double spread) {
   const double noise = narrow_gaps * gap + narrow_spreads * spread;
   return round_trip - std::max({wander_s, narrow_share * round_trip, noise});
 }
 
-/// Possible change of an offset, s, between windows that are farther apart than windows usually
-/// compared. The node was silent in between, and its crystal may have warmed.
+/// Returns the possible change of an offset, s, between windows that are unusually far apart. The
+/// node sent nothing in between, and its crystal may have warmed.
 double silence(double apart_s, double slope_deviation) {
   if (apart_s <= FloorLog::longest_reach_s) return 0.0;
   return Assumptions{}.curvature * apart_s * apart_s / 2.0 + 3.0 * slope_deviation * apart_s;
@@ -43,7 +43,8 @@ double silence(double apart_s, double slope_deviation) {
 
 }  // namespace
 
-// Inserts into a sorted array of fixed size; the longest falls out.
+// Inserts into a sorted array of fixed size. If the array is full, the longest round trip is
+// dropped.
 void ShortestRoundTrips::add(const FloorWindow& window) {
   if (window.round_trip <= 0.0) return;
   const auto end = shortest_.begin() + static_cast<std::ptrdiff_t>(count_);
@@ -61,8 +62,8 @@ void ShortestRoundTrips::leave(const FloorWindow& route) {
   left_ = std::min(left_.value_or(known), known);
 }
 
-// The shortest three that agree. Up to two shorter ones are skipped: a counter may have stepped in
-// their windows.
+// Looks for the three shortest round trips that agree. Up to two shorter ones are ignored, because
+// a counter may have stepped in their windows.
 double ShortestRoundTrips::least_width() const {
   for (std::size_t i = 0; i <= most_too_short && i + alike <= count_; ++i) {
     double gap = 0.0;
@@ -74,8 +75,8 @@ double ShortestRoundTrips::least_width() const {
   return 0.0;
 }
 
-/// Remembers the round trip of the route that was left, if its last two windows agree. A single
-/// window may be short because a counter stepped in it.
+/// Stores the round trip of the previous route if its last two windows agree. One window alone may
+/// be too short because of a step of the counter.
 void FloorLog::change_route(double s) {
   const auto last = std::find_if(past_.begin(), past_.end(),
                                  [s](const auto& window) { return window && window->s <= s; });
@@ -109,7 +110,7 @@ void FloorLog::add(const Bound& bound, const SlopeBelief& slope) {
     if (index_) close();
     open(index, slope);
   } else if (index < *index_) {
-    return;  // a late packet from the window before
+    return;  // a late packet of the previous window
   }
   const Bound level{bound.s, bound.x - slope_.mean * (bound.s - middle_s()), bound.side};
   corridor_.add(level);
@@ -125,15 +126,15 @@ void FloorLog::add(const Bound& bound, const SlopeBelief& slope) {
   std::sort(lows.x.begin(), lows.x.begin() + static_cast<std::ptrdiff_t>(lows.count));
 }
 
-/// Closes a window. Its floors belong to the widest line with a slope near the expected one,
-/// because a clock of changing rate has its own slope in each window.
+/// Closes a window. Its floors are given by the widest line with about the expected slope. The
+/// slope differs between windows if the rate of the clock changes.
 void FloorLog::close() {
   std::rotate(past_.begin(), past_.end() - 1, past_.end());
   past_[0].reset();
   ++windows_;
   if (now_[0].count == lowest && now_[1].count == lowest) {
     const auto gap = [](const Lows& l) { return (l.x.back() - l.x.front()) / (lowest - 1); };
-    // The slope of a new node is unknown, so all possible slopes are tried.
+    // The slope of a new node is unknown, so all possible slopes are allowed.
     const bool known = slope_.deviation < SlopeBelief{}.deviation;
     const CorridorLine line =
         widest_line(corridor_, middle_s(), known ? slope_slack : greatest_rate);
@@ -148,7 +149,7 @@ void FloorLog::close() {
   if (now && then && !step_) step_ = threes_.step(*now, *then, expected);
 }
 
-/// The median round trip of the remembered windows; 0 without one.
+/// Returns the median round trip of the stored windows; 0 if there is none.
 double FloorLog::usual_round_trip() const {
   std::array<double, remembered> trips{};
   std::size_t count = 0;
@@ -160,7 +161,7 @@ double FloorLog::usual_round_trip() const {
   return *middle;
 }
 
-/// Combines consecutive windows: the lowest floors, moved to the middle window.
+/// Combines neighbouring windows: the lowest floors, converted to the middle window.
 std::optional<FloorWindow> FloorLog::merged(std::size_t first, std::size_t count) const {
   const auto& centre = past_[first + count / 2];
   if (!centre) return std::nullopt;
@@ -190,12 +191,13 @@ std::optional<double> FloorLog::Comparison::step(const FloorWindow& now, const F
       pairs >= enough_pairs ? std::sqrt(moved_squares / static_cast<double>(pairs)) : gap;
   const double silent = silence(now.s - then.s, expected.slope.deviation);
   if (silent == 0.0) {
-    // A step that moves through the windows must not count as usual.
+    // A step must not increase the usual difference while it passes through the windows.
     const double counted = pairs >= enough_pairs ? std::min(std::abs(moved), 2.0 * usual) : moved;
     ++pairs;
     moved_squares += counted * counted;
   }
-  // A longer round trip may be longer one way only; half of the difference then shifts the middle.
+  // A round trip may have become longer in one direction only. The middle then shifts by half of
+  // the difference.
   const double unknown =
       std::max(0.0, (now.round_trip + then.round_trip) / 2.0 - expected.round_trip);
   const double least =

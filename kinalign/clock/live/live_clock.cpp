@@ -9,13 +9,13 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t most_events = 64;
-constexpr Duration settling = Violators::wait;  // wait after several steps
-// Wait after a single step: some frames were sent before it.
+constexpr Duration settling = Violators::wait;  // waiting time after several steps
+// Waiting time after a single step, because late frames may be from before the step.
 constexpr Duration late_frames = std::chrono::seconds(1);
 
 }  // namespace
 
-/// Queues an event. A withdrawal that finds no room extends an earlier one.
+/// Queues an event. If the queue is full, a withdrawal extends an earlier withdrawal.
 void LiveClock::report(const ClockEvent& event) {
   if (events_.size() < most_events) return events_.push_back(event);
   ++missed_events_;
@@ -33,7 +33,8 @@ void LiveClock::report(const ClockEvent& event) {
 
 std::vector<ClockEvent> LiveClock::take_events() { return std::exchange(events_, {}); }
 
-/// A piece is cut short: a step that is not confirmed yet leaves its stamps in doubt.
+/// Ends the present piece early. If a step is suspected but not confirmed, its stamps become
+/// doubtful.
 void LiveClock::cut_short() {
   if (const auto since = piece_->step_pending_since()) {
     report({ClockEvent::Kind::withdrawn, boot_, *since, newest_});
@@ -42,11 +43,11 @@ void LiveClock::cut_short() {
   settles_.reset();
 }
 
-// A new boot has another counter but the same crystal, so the slope and the shortest round trips
-// are still valid.
+// After a new boot the counter is new, but the crystal is the same. The slope and the shortest
+// round trips are therefore still valid.
 void LiveClock::begin(BootKey boot, const Crossing& first) {
   SlopeBelief prior;
-  if (piece_) {  // the crystal is the same
+  if (piece_) {  // the crystal is the same as before
     cut_short();
     prior = piece_->estimate().slope().after_a_break();
     earlier_[boots_++ % earlier_.size()] = boot_;
@@ -76,8 +77,8 @@ void LiveClock::push_up(BootKey boot, NodeTime n_tx, HostTime h_rx) {
     return;
   }
   if (!piece_ || boot != boot_) begin(boot, crossing);
-  // The host's clock must never go back (H1). If it does, a new piece begins, because old bounds
-  // don't fit new ones.
+  // The host's clock must never go back (H1). If it does, a new piece begins, because bounds from
+  // before and after don't fit together.
   if (h_rx < newest_) {
     cut_short();
     take_piece({ClockOrigin{n_tx, h_rx}, assumptions_, piece_->estimate().slope(),
@@ -95,12 +96,12 @@ void LiveClock::push_down(BootKey boot, NodeTime n_rx, HostTime h_tx) {
     ++late_;
     return;
   }
-  if (replaced_) return;  // the reply reached the node before the break that the frame revealed
+  if (replaced_) return;  // the echo is from before the break that the frame revealed
   const Crossing crossing{Side::below, n_rx, h_tx, newest_};
   answer(piece_->push(crossing), crossing);
 }
 
-/// Acts on the verdict about a crossing: reports events and replaces the piece if necessary.
+/// Handles the verdict on a crossing: reports events and replaces the piece if necessary.
 void LiveClock::answer(ClockPiece::Verdict verdict, const Crossing& crossing) {
   using Verdict = ClockPiece::Verdict;
   using Kind = ClockEvent::Kind;
@@ -113,8 +114,8 @@ void LiveClock::answer(ClockPiece::Verdict verdict, const Crossing& crossing) {
       return;
     case Verdict::violator:
       report({Kind::violator, boot_, crossing.arrival, crossing.arrival, piece_->amount()});
-      // If the violator is right, the counter has stepped. It may step back before three violators
-      // have confirmed that.
+      // If the violator is right, the counter has stepped. The counter may step back before three
+      // violators have confirmed the step.
       return report({Kind::withdrawn, boot_,
                      std::max(crossing.arrival - Violators::wait, piece_->begins()),
                      crossing.arrival});
@@ -128,8 +129,8 @@ void LiveClock::answer(ClockPiece::Verdict verdict, const Crossing& crossing) {
   }
 }
 
-/// A sleeping node's counter may run at another rate. It then seems to step again and again, by as
-/// little as a counter of changing rate.
+/// The counter of a sleeping node may run at another rate. The clock then seems to step repeatedly.
+/// Each step is as small as for a counter of changing rate.
 void LiveClock::take_step(const Crossing& crossing) {
   const bool relaxed = replace_piece(ClockEvent::Kind::step, piece_->amount(), crossing);
   const bool again = stepped_ && newest_ - *stepped_ < settling;
@@ -142,7 +143,7 @@ void LiveClock::settle(const Crossing& crossing) {
   replace_piece(ClockEvent::Kind::settled, std::nullopt, crossing);
 }
 
-/// Replaces the piece. True if the new one allows for a greater curvature.
+/// Replaces the piece. Returns whether the new piece allows a greater curvature.
 bool LiveClock::replace_piece(ClockEvent::Kind why, std::optional<double> by,
                               const Crossing& crossing) {
   replaced_ = true;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clock of one node while its frames arrive: from exchanges to host_from_node() with an
-// interval. One object for each node; its size is fixed, some 60 KiB.
+// The clock of one node during recording. It converts counter readings to host times with an
+// interval, from the exchanges so far. Each node has one object of fixed size, about 60 KiB.
 //
-//   frame up:    n_tx (T1 of RFC 5905, read by the node)  ->  h_rx (T2, read by the host)
-//   its reply:   h_tx (T3, read by the host)              ->  n_rx (T4, read by the node)
+//   frame to the host:  n_tx (T1 of RFC 5905, read by the node)  ->  h_rx (T2, read by the host)
+//   reply to the node:  h_tx (T3, read by the host)              ->  n_rx (T4, read by the node)
 //
-// The two directions need no pairing. A frame whose reply was lost still bounds the offset from
-// above. A reply is pushed once a later frame has brought its echo.
+// The two directions need not be paired. If a reply is lost, its frame still gives an upper bound
+// of the offset. A reply is pushed when a later frame has brought its echo.
 #pragma once
 
 #include "kinalign/clock/clock_event.h"
@@ -25,30 +25,31 @@ class LiveClock {
  public:
   explicit LiveClock(const Assumptions& assumptions = {}) : assumptions_(assumptions) {}
 
-  /// Takes a frame with its echo, in the order of arrival.
+  /// Adds a frame with its echo. Call in the order of arrival.
   void push(const Exchange& exchange);
-  /// One half of push(): the frame.
+  /// Adds a frame without its echo; the first half of push().
   void push_up(BootKey boot, NodeTime n_tx, HostTime h_rx);
-  /// The other half, the echo: the reply sent at h_tx reached the node at n_rx.
+  /// Adds an echo, the second half of push(): the reply sent at h_tx arrived at the node at n_rx.
   void push_down(BootKey boot, NodeTime n_rx, HostTime h_tx);
 
-  /// The time at which the counter of this boot read n. The computation is kept for the next
-  /// crossing, so stamps may depend on how often this is called, by less than their noise. Absent
-  /// if too little is known, and for earlier boots, which the offline clock covers.
+  /// Returns the time at which the counter of this boot showed n. The call stores its computation
+  /// for the next crossing. Stamps may therefore depend on how often it is called, by less than
+  /// their noise. Absent if there are too few exchanges, and for earlier boots; the offline clock
+  /// covers these.
   std::optional<ClockStamp> host_from_node(BootKey boot, NodeTime n);
 
-  /// The events since the last call, at most 64; `missed_events` counts the others. Withdrawals are
-  /// never lost: if there is no room, the last one is extended.
+  /// Returns the events since the last call, at most 64. `missed_events` counts further events.
+  /// Withdrawals are never lost: if the list is full, the last withdrawal is extended.
   std::vector<ClockEvent> take_events();
   std::uint64_t missed_events() const { return missed_events_; }
-  std::uint64_t late_crossings() const { return late_; }  // crossings of earlier boots
+  std::uint64_t late_crossings() const { return late_; }  // packets of earlier boots
 
-  /// The time since when nothing is certified, because of a recent step. Absent once the clock has
-  /// settled.
+  /// The time since which nothing is certified because of a recent step. Absent if there was no
+  /// recent step.
   std::optional<HostTime> unsettled_since() const {
     return settles_ ? std::optional(piece_->begins()) : std::nullopt;
   }
-  /// The current piece of the counter; nullptr before the first frame.
+  /// The present piece of the counter; nullptr before the first frame.
   const ClockPiece* piece() const { return piece_ ? &*piece_ : nullptr; }
 
  private:
@@ -68,8 +69,8 @@ class LiveClock {
   std::size_t boots_ = 0;
   HostTime newest_ = HostTime::min();
   std::optional<HostTime> stepped_;  // the latest step in this boot
-  bool replaced_ = false;            // the newest frame has replaced the piece
-  std::optional<HostTime> settles_;  // time at which the clock settles if there is no other step
+  bool replaced_ = false;            // the newest frame has ended the previous piece
+  std::optional<HostTime> settles_;  // stamps are certified from then on if no other step comes
   std::uint32_t routes_reported_ = 0;
   std::uint64_t late_ = 0;
   std::vector<ClockEvent> events_;

@@ -9,18 +9,19 @@ namespace kinalign {
 
 namespace {
 
-constexpr double floors_known_after_s = 8.0;  // time until the floors of a route are known
+constexpr double floors_known_after_s = 8.0;  // time after which the floors of a route are known
 constexpr std::uint64_t floors_known_from_points = 100;
-// A bound stands apart if its distance exceeds a floor's usual gaps by this factor.
+// A bound may belong to another route if its distance from the floor exceeds the usual gaps by this
+// factor.
 constexpr double gaps_off = 20.0;
 constexpr double least_off_s = 20e-6;  // smallest such distance
-constexpr double wander = 0.2e-6;      // possible difference of the slopes on two routes
-// Tolerance of the round trips before and after a step, in units of their noise.
+constexpr double wander = 0.2e-6;      // possible difference between the slopes on two routes
+// Tolerance for the round trips before and after a step, in units of their noise.
 constexpr double alike_round_trips = 8.0;
 constexpr double step_deviations = 20.0;
-// A route with fewer points is young: its middle is computed anew for each bound.
+// While a route has fewer points, its middle is computed after each bound.
 constexpr std::uint64_t few_points = 64;
-// A bound more than this many gaps above the floor gives no information about the floor: e^-8.
+// A bound this many gaps above the floor tells almost nothing about the floor (weight e^-8).
 constexpr double far_gaps = 8.0;
 constexpr std::uint32_t most_unseen = 4;
 constexpr double stale_middle_s = 1.0, stale_answer_s = 0.25;
@@ -37,7 +38,7 @@ void OffsetEstimate::add_to_route(Side side, OffsetBound bound) {
   route_.add(side, bound, middle_);
 }
 
-/// Adds a bound to the route, unless it lies so far off the floor that it may belong to another
+/// Adds a bound to the route, unless it is so far from the floor that it may belong to another
 /// route.
 void OffsetEstimate::add(const Bound& b) {
   const OffsetBound bound = from_above(b);
@@ -61,7 +62,7 @@ void OffsetEstimate::add(const Bound& b) {
   look(b.s, !(excess * density > far_gaps));
 }
 
-/// Computes the middle again once enough informative bounds have come. `is_informative`: this bound
+/// Computes the middle again after enough informative bounds. `is_informative`: whether this bound
 /// is informative.
 void OffsetEstimate::look(double s, bool is_informative) {
   if (!route_.bounded()) return;
@@ -75,17 +76,16 @@ void OffsetEstimate::refresh(double t) {
   unseen_ = 0;
 }
 
-/// The route's middle, shifted towards the value at the joint, weighted against the range of the
-/// route's own round trip. The extra delay of a route may lie in either direction or be divided
-/// between both; all shares are equally likely.
+/// Combines the middle of the present route with the value carried over from earlier routes,
+/// weighted by their variances. The additional delay of a route may occur in either direction or be
+/// divided between both. All divisions are assumed equally likely.
 Middle OffsetEstimate::joined(const Middle& middle) const {
   if (!joint_) return middle;
   const Middle there = route_.middle_elsewhere(joint_->s, middle);
   const double carried = joint_->x - there.value;
   const double carried_variance = joint_->variance + there.deviation * there.deviation;
   const double longer = std::max(0.0, middle.round_trip - least_round_trip_);
-  // The variance of a value that is equally likely everywhere in a range is the range squared by
-  // 12.
+  // A value that is equally likely in a whole range has the variance range^2 / 12.
   const double own_variance = (longer * longer + std::pow(middle.floor_deviation(), 2)) / 12.0;
   const double share = own_variance / (own_variance + carried_variance);
   Middle moved = middle;
@@ -94,7 +94,8 @@ Middle OffsetEstimate::joined(const Middle& middle) const {
   return moved;
 }
 
-/// Without bounds of both kinds on the present route, the offset at the joint is extrapolated.
+/// If the present route has only bounds of one kind, the offset is extrapolated from the earlier
+/// route.
 std::optional<Middle> OffsetEstimate::at(double t) {
   if (route_.bounded()) {
     if (unseen_ > 0 || std::abs(t - middle_.t) > stale_answer_s) refresh(t);
@@ -108,7 +109,7 @@ std::optional<Middle> OffsetEstimate::at(double t) {
   return middle;
 }
 
-/// Decides whether the counter stepped at the change of route. Called once the floors of the
+/// Decides whether the counter stepped at the change of route. Called when the floors of the
 /// present route are known.
 void OffsetEstimate::judge_change(double s) {
   if (!joint_ || joint_->judged) return;
@@ -127,7 +128,7 @@ double OffsetEstimate::least_round_trip() const {
   return joint_ ? std::min(least_round_trip_, middle_.round_trip) : middle_.round_trip;
 }
 
-/// Carries the offset over s to a new route.
+/// Carries the offset at s over to a new route.
 void OffsetEstimate::join_routes(double s) {
   const Middle old = *at(s);
   least_round_trip_ = joint_ ? std::min(least_round_trip_, old.round_trip) : old.round_trip;
@@ -137,7 +138,7 @@ void OffsetEstimate::join_routes(double s) {
   route_ = Route({old.slope, route_.belief().deviation + wander});
 }
 
-/// The first guess at the new floors: through the lowest points after s.
+/// Makes a first guess of the new floors from the lowest points after s.
 void OffsetEstimate::guess_floors(double s, const Middle& before) {
   const auto risen = [&](Side side) {
     const FloorLine floor = before.floor(side);

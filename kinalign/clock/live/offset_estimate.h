@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The likeliest offset between two clocks, also when the packets' route changes. The packets don't
-// show how a change of route affects the delays of each direction. But x(t) itself has no jump, so
-// the offset is carried over from the route with the shortest round trip.
+// The likeliest offset between two clocks, also if the packets change their route. Packets don't
+// show how a change of route affects the delay in each direction. The true offset x(t) is
+// continuous, so it is carried over from the route with the shortest round trip.
 #pragma once
 
 #include "kinalign/clock/live/recent_bounds.h"
@@ -13,12 +13,12 @@
 
 namespace kinalign {
 
-/// The moment of a change of route.
+/// A change of route.
 struct RouteChange {
   double s = 0.0;
-  /// Set some seconds later, s. If the round trip is almost unchanged and the floors moved against
-  /// each other by this amount, the counter has stepped. A route that is longer one way and equally
-  /// shorter the other way would look the same, but is unlikely.
+  /// The step of the counter at this time, s; set some seconds after the change. It is set if the
+  /// round trip is almost unchanged but the floors moved against each other. A route that is longer
+  /// in one direction and equally shorter in the other would look the same, but is unlikely.
   std::optional<double> step;
 };
 
@@ -26,22 +26,22 @@ class OffsetEstimate {
  public:
   explicit OffsetEstimate(SlopeBelief prior = {}) : route_(prior) {}
 
-  /// Bounds must come nearly in order of s.
+  /// Call nearly in the order of s.
   void add(const Bound& bound);
 
   /// Absent until there is a bound of each kind.
   std::optional<Middle> at(double t);
   SlopeBelief slope() const { return route_.belief(); }
-  /// Distance between the floors of the shortest route so far, s.
+  /// Round trip of the shortest route so far, s.
   double least_round_trip() const;
   const std::optional<RouteChange>& last_change() const { return last_change_; }
   std::uint32_t changes() const { return changes_; }
 
  private:
-  /// The point at which the present route was joined to the earlier ones.
+  /// The moment at which the present route follows the earlier routes.
   struct Joint {
     double s = 0.0, x = 0.0, variance = 0.0;
-    double round_trip = 0.0, floor_deviation = 0.0;  // the earlier route's
+    double round_trip = 0.0, floor_deviation = 0.0;  // of the earlier route
     bool judged = false;  // judge_change() has looked for a step of the counter
   };
 
@@ -57,7 +57,7 @@ class OffsetEstimate {
   void judge_change(double s);
 
   Route route_;
-  Middle middle_;                // middle of the present route alone; its lines are the floors
+  Middle middle_;                // middle of the present route alone; contains its floors
   std::uint32_t unseen_ = 0;     // bounds since `middle_` was computed
   std::optional<double> since_;  // first bound of the route
   std::array<RecentBounds, 2> recent_;

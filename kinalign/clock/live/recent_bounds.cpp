@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A new route shows delays of the usual distribution on another floor. On a busy radio link delays
-// are long for a while; their spread then exceeds the rise of the least delay.
+// On a new route the delays have the usual distribution above another floor. On a busy radio link
+// the delays are long for some time. Their spread is then greater than the rise of the least delay.
 #include "kinalign/clock/live/recent_bounds.h"
 
 #include <algorithm>
@@ -13,18 +13,18 @@ namespace {
 
 constexpr std::array windows_s{1.0, 3.0, 9.0};
 constexpr std::size_t least_points = 6;
-// The floor must have moved by this, divided by the seconds watched, times the spread of the
-// delays.
+// The floor must have moved by at least this number, divided by the seconds watched, times the
+// spread of the delays.
 constexpr double steepness_s = 2.0;
 constexpr double least_steepness = 1.0;  // smallest value of that factor
-// Bounds between two checks, because checking nine seconds takes a while.
+// Number of bounds between two checks, because a check over nine seconds is slow.
 constexpr std::size_t asked_each = 3;
 constexpr double silent_steps = 2.5;
 constexpr double least_gap_s = 1e-3;
 constexpr double sure_nats = 25.0;  // required evidence against the old floor
 
-/// Evidence that `points` delays of at least `excess` above a floor don't belong to the delays
-/// counted before.
+/// Returns the evidence that `points` delays of at least `excess` above a floor don't belong to
+/// this floor.
 double nats(const ExcessCounts& counts, std::size_t points, double excess) {
   const auto n = static_cast<double>(points);
   const double others = static_cast<double>(counts.total()) - n;
@@ -66,8 +66,8 @@ std::optional<double> RecentBounds::moved(const FloorLine& line, const ExcessCou
   return std::nullopt;
 }
 
-/// True if half of the bounds lie close to the lowest one: closer than delays usually do, and
-/// closer than the lowest one rose.
+/// Returns whether half of the bounds are near the lowest one. "Near" means closer than the usual
+/// delays, and closer than the lowest one has risen.
 bool RecentBounds::another_floor(const Level& level, double window_s, const FloorLine& line,
                                  const ExcessCounts& counts) const {
   const double steepness = std::max(steepness_s / window_s, least_steepness);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Delays above a floor have a density, in points per second of delay. A height of the floor is then
-// likely by exp(density * height) up to the lowest point, and impossible above it. Integrating over
-// the heights of both floors, a slope b is likely by exp(density * g(b)), where g is the gap
-// between the hulls. The peak of g is the widest line (corridor.h); this file computes the mean.
+// Delays just above a floor have a density, in delays per second of delay. The likelihood of a
+// height of the floor is exp(density * height) up to the lowest point, and zero above it.
+// Integrating over the heights of both floors gives the likelihood exp(density * g(b)) of a slope
+// b; g is the gap between the hulls. The peak of g is the widest line (corridor.h). This file
+// computes the mean.
 #include "kinalign/clock/live/route.h"
 
 #include "kinalign/clock/assumptions.h"
@@ -17,12 +18,12 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t grid = 24;  // number of slopes in the average
-constexpr double reach = 5.0;     // range of these slopes, in deviations to each side
+constexpr double reach = 5.0;     // range of these slopes on each side, in standard deviations
 constexpr int most_rounds = 24;
-constexpr double least_deviation = 1e-15;  // slope: a microsecond in thirty years
-constexpr double far_beyond = 1e4;         // nats; evidence from sharp floors may reach hundreds
+constexpr double least_deviation = 1e-15;  // slope: 1 us in thirty years
+constexpr double far_beyond = 1e4;         // nats; sharp floors may give hundreds
 
-/// The grid of slopes with their results; arrays [grid].
+/// The slopes of the grid and the results for each slope; arrays [grid].
 struct Slopes {
   std::array<double, grid> slope{}, middle{}, gap{}, likelihood{};
   std::size_t likeliest = 0;
@@ -34,20 +35,20 @@ struct Evidence {
   double t, density;
 };
 
-/// Negative log prior of a slope, in nats: a few crystals are far worse than most, and none is
-/// worse than 100 ppm.
+/// Negative logarithm of the prior probability of a slope, in nats. A few crystals are far worse
+/// than most; no crystal is worse than 100 ppm.
 double surprise(double slope, const SlopeBelief& prior) {
   const double off = std::abs(slope - prior.mean) / prior.deviation;
   const double beyond = std::max(0.0, std::abs(slope) - greatest_rate) / SlopeBelief{}.deviation;
   return (off < 2.0 ? off * off / 2.0 : 2.0 * off - 2.0) + far_beyond * beyond * beyond;
 }
 
-/// Likelihood of each slope on the grid, relative to the greatest.
+/// Computes the likelihood of each slope of the grid, relative to the greatest.
 Slopes weigh(const Evidence& e, const SlopeBelief& prior, const SlopeBelief& around) {
   Slopes s;
   const double first = around.mean - reach * around.deviation;
   const double step = 2.0 * reach * around.deviation / (grid - 1);
-  std::array<double, grid> above{}, below{};  // the lower bounds are mirrored: their slopes fall
+  std::array<double, grid> above{}, below{};  // `below` has changed sign, so its slopes fall
   e.above.bounds_at(e.t, first, step, above);
   e.below.bounds_at(e.t, -first - step * (grid - 1), step, below);
   for (std::size_t i = 0; i < grid; ++i) {
@@ -80,7 +81,7 @@ Moments moments(const std::array<double, grid>& values, const std::array<double,
   return {first, std::sqrt(second / sum)};
 }
 
-/// A better position and width of the grid if it did not fit the result; empty if it did.
+/// Returns a better position and width of the grid, or nothing if the grid fitted the result.
 std::optional<SlopeBelief> better_grid(const Slopes& s, const Moments& found, double deviation) {
   const double step = 2.0 * reach * deviation / (grid - 1);
   if (s.likeliest <= 1 || s.likeliest >= grid - 2) {
@@ -121,8 +122,8 @@ Middle Route::middle_elsewhere(double t, const Middle& now) const {
   return average(t, now, around);
 }
 
-// The grid of slopes is moved and scaled until the likely slopes lie within it and several of its
-// points are among them.
+// The grid of slopes is moved and scaled until the likely slopes are within it and several grid
+// points are likely.
 Middle Route::average(double t, const Middle& known, SlopeBelief& around) const {
   const bool sharp = known.sharp();
   const double above_gap = sharp ? 1.0 / known.above_density : 0.0;
@@ -143,7 +144,7 @@ Middle Route::average(double t, const Middle& known, SlopeBelief& around) const 
     middle.t = t;
     middle.slope = slope.mean;
     middle.value = value.mean;
-    // On average a floor lies below its lowest point by one gap between points.
+    // On average a floor is one gap between points below its lowest point.
     middle.round_trip = moments(s.gap, s.likelihood).mean - above_gap - below_gap;
     middle.deviation =
         sharp ? std::hypot(value.deviation, std::hypot(above_gap, below_gap) / 2.0) : 1.0;

@@ -1,31 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-// The likeliest offset between two clocks while packets take a single route.
+// The likeliest offset between two clocks while all packets take the same route.
 #pragma once
 
 #include "kinalign/clock/live/floor.h"
 
 namespace kinalign {
 
-/// Knowledge of a slope: mean and standard deviation. The default lies between the tolerance of an
-/// ESP32's crystal at 25 C (+-10 ppm, Espressif's hardware guidelines) and that of uncompensated
-/// crystals from 0 to 50 C (+-20 ppm; table 1 of "Time synchronisation for millisecond-precision on
-/// bio-loggers", Movement Ecology 2024).
+/// Mean and standard deviation of a slope. The default deviation is between two values: the
+/// tolerance of an ESP32's crystal at 25 C (+-10 ppm, Espressif's hardware guidelines) and that of
+/// uncompensated crystals from 0 to 50 C (+-20 ppm; table 1 of "Time synchronisation for
+/// millisecond-precision on bio-loggers", Movement Ecology 2024).
 struct SlopeBelief {
   double mean = 0.0;
   double deviation = 15e-6;
 
-  /// The belief about the same crystal after a reboot or a step: it may have warmed meanwhile.
+  /// The slope of the same crystal after a reboot or a step. The crystal may have warmed.
   SlopeBelief after_a_break() const { return {mean, deviation + 2e-6}; }
 };
 
-/// x(t) in the middle between the two floors.
+/// The offset x(t) midway between the floors of both directions.
 struct Middle {
   double t = 0.0;
   double value = 0.0;
   double slope = 0.0;
-  double deviation = 0.0;   // sd of the value, if both floors have the same delay
+  double deviation = 0.0;   // standard deviation of the value, if both floors have the same delay
   double round_trip = 0.0;  // distance between the floors, s
-  /// Density of bounds at the floors; 0: not known yet.
+  /// Density of bounds just above the floors; 0: not known.
   double above_density = 0.0, below_density = 0.0;
 
   double at(double s) const { return value + slope * (s - t); }
@@ -35,19 +35,19 @@ struct Middle {
     moved.value = at(s);
     return moved;
   }
-  FloorLine floor(Side side) const;  // mirrored for the lower side
+  FloorLine floor(Side side) const;  // with changed sign for the lower side
   double density(Side side) const { return side == Side::above ? above_density : below_density; }
   bool sharp() const { return above_density > 0.0 && below_density > 0.0; }
-  /// Uncertainty of the two floors, s; 1 if they are not sharp.
+  /// Uncertainty of the two floors, s; 1 if their densities are not known.
   double floor_deviation() const;
 };
 
-/// Bounds from above (x <= h_rx - n_tx) and from below (x >= h_tx - n_rx). x lies between them as
-/// long as the least delays don't change.
+/// Upper bounds (x <= h_rx - n_tx) and lower bounds (x >= h_tx - n_rx) of one route. x lies between
+/// them while the least delays don't change.
 class Route {
  public:
-  /// Keeps at most `corners` corners of each hull. A few are enough as long as only the newest end
-  /// is asked for.
+  /// Keeps at most `corners` corners of each hull. If only the newest values are needed, a few
+  /// corners suffice.
   explicit Route(SlopeBelief prior, std::size_t corners = 255)
       : prior_(prior), belief_(prior), above_(corners), below_(corners) {}
 
@@ -57,10 +57,10 @@ class Route {
   std::uint64_t points() const { return above_.counts().total() + below_.counts().total(); }
   SlopeBelief belief() const { return belief_; }
 
-  /// The mean over all slopes, weighted by their likelihood. `last` is an earlier answer or a
-  /// guess. Needs a bound of each kind.
+  /// Returns the mean over all slopes, weighted by their likelihood. `last` is an earlier result or
+  /// a guess. Needs a bound of each kind.
   Middle middle(double t, const Middle& last);
-  /// The middle at another t, with the floors as sharp as in `now`.
+  /// Returns the middle at another t, using the densities of `now`.
   Middle middle_elsewhere(double t, const Middle& now) const;
 
  private:

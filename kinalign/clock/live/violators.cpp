@@ -8,12 +8,12 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::uint64_t few_crossings = 8;  // limit for a node that rarely sends
-constexpr double latest_s = 1.0;  // a crossing that is so late may come from before a step
+constexpr std::uint64_t few_crossings = 8;  // limit for a node that sends rarely
+constexpr double latest_s = 1.0;  // a crossing that is this late may be from before a step
 
 }  // namespace
 
-// Between two bounds the offset can move by the greatest rate times their distance, and no further.
+// Between two bounds the offset can change at most by the greatest rate times their distance.
 bool contradict(const Bound& a, const Bound& b, double rate) {
   if (a.side == b.side) return false;
   const Bound& above = a.side == Side::above ? a : b;

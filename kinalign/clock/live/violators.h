@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps crossings that contradict the certificate. Either such a packet is wrong or the counter
-// stepped. If it is wrong, a later crossing contradicts it. If nothing contradicts it for a while,
-// it is believed.
+// Stores violators: crossings that contradict the certificate. Either the packet's stamp is wrong,
+// or the counter stepped. A later crossing that contradicts the violator shows that the violator is
+// wrong. If none does so for some time, the violator is taken as right.
 #pragma once
 
 #include "kinalign/clock/bound.h"
@@ -14,13 +14,13 @@
 
 namespace kinalign {
 
-/// One direction of an exchange. A frame that left at n and arrived at h bounds the offset from
-/// above; a reply that left at h and arrived at n bounds it from below.
+/// One packet of an exchange. A frame sent at n that arrived at h gives an upper bound of the
+/// offset. A reply sent at h that arrived at n gives a lower bound.
 struct Crossing {
   Side side = Side::above;
   NodeTime n{};
   HostTime h{};
-  HostTime arrival{};  // arrival of the frame that reported it
+  HostTime arrival{};  // arrival of the frame that contained these readings
 };
 
 /// A crossing that contradicts the certificate.
@@ -28,28 +28,28 @@ struct Violator {
   Crossing crossing;
   Bound bound;
   double amount = 0.0;       // distance to the certificate, s
-  std::uint64_t number = 0;  // its number among the crossings of the piece
+  std::uint64_t number = 0;  // number of this crossing within the piece
 };
 
-/// True if no function with at most this rate satisfies both bounds.
+/// Returns whether no function with at most this rate satisfies both bounds.
 bool contradict(const Bound& a, const Bound& b, double rate);
 
 class Violators {
  public:
-  /// For counters of 1 us on both sides and their reading.
+  /// Tolerance for the resolution of both counters, 1 us, and for reading them.
   static constexpr double tolerated_s = 5e-6;
   static constexpr Duration wait = std::chrono::seconds(5);
 
   /// Call only while full() is false.
   void add(const Violator& violator);
-  /// Drops the violators that contradict `taken`, a bound that agrees with the certificate and is
-  /// more than a second later.
+  /// Removes the violators that contradict `taken`. `taken` agrees with the certificate and is more
+  /// than a second later than these violators.
   void drop_excluded_by(const Bound& taken, double rate);
   void clear() { count_ = 0; }
 
   std::span<const Violator> pending() const { return {violators_.data(), count_}; }
   bool full() const { return count_ == violators_.size(); }
-  /// True if a violator has been pending for so long that it must be believed.
+  /// Returns whether a violator has been pending so long that it is taken as right.
   bool overdue(HostTime now, std::uint64_t crossings) const;
 
  private:

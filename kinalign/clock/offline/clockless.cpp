@@ -55,8 +55,8 @@ std::optional<std::vector<HostTime>> stamps_by_frame_number(
   const auto planned = [&](const ClocklessExchange& e) {
     return static_cast<double>(e.frame - origin.frame) / rate_hz;
   };
-  // The frame's number gives the planned time; the hull of the arrivals follows the frames that
-  // were delayed least.
+  // The frame number gives the planned time. The hull of the arrivals follows the frames with the
+  // least delay.
   LiftedHull hull(curvature);
   for (const ClocklessExchange& e : exchanges) {
     hull.add(planned(e), seconds(e.t2 - origin.t2) - planned(e));

@@ -14,15 +14,15 @@ namespace kinalign {
 
 namespace {
 
-/// Greatest age of a sample in a frame; an older one falls under the piece before.
+/// Greatest age of a sample in a frame. An older sample belongs to the previous piece.
 constexpr Duration oldest_sample = std::chrono::seconds(2);
 
-/// Chosen: twice the error allowed for a stated rate (recording/streams/counted_clock.h). A faulty
-/// counter may have any rate.
+/// Chosen, not measured: twice the error allowed for a stated rate
+/// (recording/streams/counted_clock.h). A faulty counter may have any rate.
 constexpr double most_drift_ppm = 20'000.0;
 
-/// Fits the exchanges of one boot; `indices` has their indices in `exchanges`. An hour of a device
-/// takes 20 MB, so exchanges that follow one another are not copied.
+/// Fits the exchanges of one boot; `indices` are their indices in `exchanges`. Consecutive
+/// exchanges are not copied, because an hour of a device takes 20 MB.
 HostFromNode fit_one_way(std::span<const Exchange> exchanges,
                          std::span<const std::size_t> indices) {
   if (indices.empty()) return {};
@@ -35,13 +35,14 @@ HostFromNode fit_one_way(std::span<const Exchange> exchanges,
   return fit_one_way_clock(received);
 }
 
-/// Gives pieces without replies a clock from their arrivals alone.
+/// Gives pieces without replies a clock that uses only arrivals.
 HostFromNode with_one_way(HostFromNode model, std::span<const Exchange> exchanges) {
   HostFromNode out;
   out.doubtful = std::move(model.doubtful);
   std::unordered_map<BootKey, std::vector<std::size_t>> exchanges_of;  // boots without replies
   for (const ClockPieceModel& piece : model.pieces) {
-    // Creates an empty entry, so that only exchanges of these boots are collected below.
+    // The access creates an empty entry, so that the loop below collects the exchanges of these
+    // boots.
     if (piece.knots.empty()) exchanges_of[piece.boot];
   }
   for (std::size_t i = 0; i < exchanges.size(); ++i) {
@@ -70,11 +71,12 @@ HostTime host_at(const ClockKnot& knot) {
   return HostTime{knot.node.time_since_epoch() + knot.offset};
 }
 
-/// True if a step or a doubtful stretch lies at or near the line between two knots.
+/// Returns whether a step or a doubtful stretch is at or near the line between two knots.
 bool is_doubtful(const HostFromNode& model, const ClockPieceModel& piece, const ClockKnot& a,
                  const ClockKnot& b) {
   constexpr Duration around = std::chrono::seconds(1);
-  // A second is added on each side, because a stretch concerns arrivals and knots concern readings.
+  // The margin of a second is needed because a stretch refers to arrivals and knots refer to
+  // readings.
   const HostTime begin = host_at(a) - around, end = host_at(b) + around;
   if (!is_behind_step(host_at(a) - (a.offset - a.least), piece.certified_from, piece.last))
     return true;
@@ -83,14 +85,15 @@ bool is_doubtful(const HostFromNode& model, const ClockPieceModel& piece, const 
   });
 }
 
-/// Greatest distance from the likeliest offset to an end of the interval between two knots.
+/// Returns the greatest distance between the likeliest offset and an end of the interval between
+/// two knots.
 Duration half_width_of(const ClockKnot& a, const ClockKnot& b) {
   return std::max({a.offset - a.least, a.greatest - a.offset, b.offset - b.least,
                    b.greatest - b.offset}) +
          counter_resolution;
 }
 
-/// Appends a straight line for each pair of neighbouring knots.
+/// Appends a line for each pair of neighbouring knots.
 void append_lines(const HostFromNode& model, const ClockPieceModel& piece, Duration moved,
                   Duration utc_minus_host, TimeModel& time) {
   for (std::size_t k = 0; k < piece.knots.size(); ++k) {
@@ -102,7 +105,7 @@ void append_lines(const HostFromNode& model, const ClockPieceModel& piece, Durat
     if (b.node > a.node) {
       line.drift_ppm = 1e6 * seconds(b.offset - a.offset) / seconds(b.node - a.node);
     } else if (k > 0) {
-      line.drift_ppm = time.pieces.back().drift_ppm;  // the last knot continues the line before it
+      line.drift_ppm = time.pieces.back().drift_ppm;  // the last knot continues the previous line
     }
     if (std::abs(line.drift_ppm) > most_drift_ppm) line.drift_ppm = 0.0;
     if (piece.certified && !is_doubtful(model, piece, a, b)) line.half_width = half_width_of(a, b);
@@ -110,7 +113,7 @@ void append_lines(const HostFromNode& model, const ClockPieceModel& piece, Durat
   }
 }
 
-/// Samples may be older than the first frame, so the first line starts that much earlier, but not
+/// Begins the first line early enough for samples that are older than the first frame, but not
 /// before the end of the previous piece.
 void reach_back(TimeModel& time, std::size_t first, std::optional<Time> last_stamp) {
   TimeModelPiece& line = time.pieces[first];
@@ -122,9 +125,9 @@ void reach_back(TimeModel& time, std::size_t first, std::optional<Time> last_sta
   line.begin = begin;
 }
 
-/// Keeps UTC from falling, from line `first` on, where the stamps continue those of the line
-/// before. A guessed line that would begin before the end of the previous line begins at that end.
-/// Later stamps belong to later moments, whatever the arrivals suggest.
+/// Prevents UTC from going back, from line `first` on, where stamps continue from the previous
+/// line. A line that would begin before the end of the previous line begins at that end, because
+/// later stamps belong to later moments.
 void keep_rising(TimeModel& time, std::size_t first) {
   for (std::size_t i = std::max<std::size_t>(first, 1); i < time.pieces.size(); ++i) {
     TimeModelPiece& line = time.pieces[i];
@@ -136,20 +139,20 @@ void keep_rising(TimeModel& time, std::size_t first) {
   }
 }
 
-/// The smallest shift that keeps stamps rising: that of the last piece, or one by which the stamps
-/// continue for as long as the host counted.
+/// Returns the smallest shift that keeps stamps rising: the shift of the last piece, or the shift
+/// with which stamps continue as long as the host's clock counted.
 Duration move_of(const ClockPieceModel& piece, const ClockPieceModel& before, Duration moved) {
   const ClockKnot &end = before.knots.back(), &begin = piece.knots.front();
   if (piece.boot == before.boot && begin.node > end.node) return moved;
-  // At least twice the greatest age of a sample, so that old samples of the new piece stay after
-  // those of the piece before.
+  // The gap is at least twice the greatest age of a sample, so that old samples of the new piece
+  // have later stamps than the previous piece.
   const Duration between = std::max(host_at(begin) - host_at(end), 2 * oldest_sample);
   return end.node.time_since_epoch() + moved + between - begin.node.time_since_epoch();
 }
 
 }  // namespace
 
-// Pieces without knots keep their place in `moved`, so that an index means the same in both lists.
+// A piece without knots also has an entry in `moved`, so that both lists have the same indices.
 DeviceClock device_clock(std::span<const Exchange> exchanges, Duration utc_minus_host) {
   DeviceClock out;
   out.model = with_one_way(fit_offline_clock(exchanges).model, exchanges);
@@ -164,7 +167,7 @@ DeviceClock device_clock(std::span<const Exchange> exchanges, Duration utc_minus
       const std::size_t first = out.time.pieces.size();
       append_lines(out.model, piece, moved, utc_minus_host, out.time);
       reach_back(out.time, first, last_stamp);
-      // The stamps continue, so UTC must continue to rise with them.
+      // The stamps continue without a shift, so UTC must continue to rise.
       if (before != nullptr && moved == last_moved) keep_rising(out.time, first);
       last_stamp = stamp_at(piece.knots.back().node, moved);
       before = &piece;
@@ -185,8 +188,8 @@ std::optional<Time> stamp_of(const DeviceClock& clock, BootKey boot, NodeTime n,
   const auto& pieces = clock.model.pieces;
   std::optional<std::size_t> found;
   for (const std::size_t p : of_boot->second) {
-    // A frame that arrives before the first piece of its boot uses the first piece. One that
-    // arrives between two pieces or after the last uses the piece before it.
+    // A frame before the first piece of its boot uses the first piece. A frame between two pieces
+    // or after the last piece uses the piece before the frame.
     if (found && h_rx < pieces[p].first) continue;
     found = p;
     if (h_rx <= pieces[p].last) break;

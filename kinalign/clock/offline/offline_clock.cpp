@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Second step of the offline clock: each piece found by the walk is fitted to all of its bounds.
+// Second step of the offline clock: fits each piece that the walk (offline_walk.h) found to all its
+// bounds.
 #include "kinalign/clock/offline/offline_clock.h"
 
 #include "kinalign/clock/bound.h"
@@ -17,7 +18,7 @@ namespace {
 
 constexpr double knot_s = 1.0;
 constexpr double longest_wait_s = 60.0;    // longest delay of a packet
-constexpr double longest_offline_s = 1e6;  // eleven days; there is a knot for each second
+constexpr double longest_offline_s = 1e6;  // eleven days; each second needs memory for a knot
 
 /// The bounds of a piece, in seconds from its first exchange.
 struct PieceBounds {
@@ -32,21 +33,21 @@ struct PieceBounds {
 };
 
 Certificate certificate_of(std::vector<Bound> bounds, const Assumptions& assumptions) {
-  std::sort(bounds.begin(), bounds.end(),  // adding at the end is cheap, inserting is not
+  std::sort(bounds.begin(), bounds.end(),  // adding at the end is fast, inserting is slow
             [](const Bound& a, const Bound& b) { return a.s < b.s; });
   Certificate certificate(assumptions);
   for (const Bound& b : bounds) certificate.add(b);
   return certificate;
 }
 
-// The model of a piece before anything is said about its certainty.
+// The knots of a piece. Its certainty is determined later.
 struct Knots {
   std::vector<ClockKnot> knots;
-  bool sound = true;  // the bounds agree everywhere and leave at least the least width
+  bool sound = true;  // no contradiction, and no interval narrower than the least width
 };
 
-/// A knot a second, with the likeliest offset and the interval. The interval is widened for the
-/// curvature between knots.
+/// Computes a knot for each second, with the likeliest offset and the interval. The interval is
+/// widened to allow for the curvature between knots.
 Knots knots_of(const PieceBounds& piece, const Certificate& certificate, OfflineEstimate& estimate,
                double least_width) {
   double begin = piece.bounds.front().s, end = begin;
@@ -55,7 +56,8 @@ Knots knots_of(const PieceBounds& piece, const Certificate& certificate, Offline
     end = std::max(end, b.s);
   }
   const double widened = certificate.assumptions().curvature * knot_s * knot_s / 8.0;
-  // The offset between the origins is added in whole nanoseconds, which a double may not keep.
+  // The offset between the origins is added in whole nanoseconds, because a double may not hold it
+  // exactly.
   const Duration base = piece.origin.host.time_since_epoch() - piece.origin.node.time_since_epoch();
   const auto count = static_cast<std::size_t>(std::ceil((end - begin) / knot_s)) + 1;
   Knots out;
@@ -63,8 +65,8 @@ Knots knots_of(const PieceBounds& piece, const Certificate& certificate, Offline
     const Duration since = nanoseconds(std::round((begin + knot_s * static_cast<double>(i)) * 1e9));
     const double t = seconds(since), likeliest = estimate.at(t);
     const auto range = certificate.at(t);
-    // One knot at which the bounds contradict each other, or leave less room than packets take,
-    // refutes the assumptions for the whole piece.
+    // The assumptions are wrong for the whole piece if the bounds contradict each other at one knot
+    // or the interval is too narrow there.
     out.sound = out.sound && range && range->high - range->low >= least_width;
     const double low = range ? range->low : likeliest, high = range ? range->high : likeliest;
     out.knots.push_back({piece.origin.node + since,
@@ -75,8 +77,8 @@ Knots knots_of(const PieceBounds& piece, const Certificate& certificate, Offline
   return out;
 }
 
-/// Fits a piece under the assumptions that the live clock had for it. A piece that contradicts them
-/// has no certificate.
+/// Fits a piece under the assumptions that the live clock had. If the piece contradicts them, it is
+/// not certified.
 void fit(const PieceBounds& piece, double least_width, const Assumptions& assumptions,
          ClockPieceModel& model) {
   OfflineEstimate estimate(piece.bounds);
@@ -89,9 +91,9 @@ void fit(const PieceBounds& piece, double least_width, const Assumptions& assump
   model.certified = found.sound && certificate.bounded();
 }
 
-/// True if the counter advanced about as far as the host's clock. A piece of two frames has no
-/// certificate that could exclude a faulty counter, and there would be a knot for each second of
-/// it.
+/// Returns whether the counter advanced about as far as the host's clock. In a piece of two frames,
+/// no certificate can exclude a faulty counter. The piece would then get a knot for each of a huge
+/// number of seconds.
 bool counted_like_the_host(const PieceBounds& piece) {
   const auto [first, last] =
       std::minmax_element(piece.bounds.begin(), piece.bounds.end(),
@@ -104,7 +106,7 @@ bool counted_like_the_host(const PieceBounds& piece) {
   return node < 1.01 * host + longest_wait_s && node < longest_offline_s;
 }
 
-/// The exchanges of a piece, without those left out and those in doubt.
+/// Collects the exchanges of a piece, except ignored and doubtful ones.
 PieceBounds collect(const OfflineWalk& walk, std::size_t p,
                     std::span<const DoubtfulStretch> doubtful, ClockPieceModel& model) {
   PieceBounds piece;
@@ -123,7 +125,7 @@ PieceBounds collect(const OfflineWalk& walk, std::size_t p,
     model.violators += (walk.up_left_out[i] ? 1U : 0U) + (walk.echo_left_out[i] ? 1U : 0U);
     if (is_in(doubtful, e.h_rx)) continue;
     if (!walk.up_left_out[i]) piece.add(Side::above, e.n_tx, e.h_rx);
-    // The echo of the first frame reached the node before the counter stepped.
+    // The echo in the first frame is from before the step of the counter.
     if (e.echo && i != first && !walk.echo_left_out[i])
       piece.add(Side::below, e.echo->n_rx, e.echo->h_tx);
   }
@@ -134,8 +136,8 @@ PieceBounds collect(const OfflineWalk& walk, std::size_t p,
 
 }  // namespace
 
-// Bounds of doubtful stretches are left out first. If nothing else remains, they still give the
-// likeliest offset, without a certificate.
+// Bounds in doubtful stretches are omitted first. If no other bounds remain, they give the
+// likeliest offset without a certificate.
 OfflineClock fit_offline_clock(std::span<const Exchange> exchanges,
                                const Assumptions& assumptions) {
   OfflineWalk walk = walk_offline(exchanges, assumptions);
@@ -143,7 +145,7 @@ OfflineClock fit_offline_clock(std::span<const Exchange> exchanges,
   for (std::size_t p = 0; p < walk.pieces.size(); ++p) {
     ClockPieceModel& model = out.model.pieces.emplace_back();
     PieceBounds piece = collect(walk, p, walk.doubtful, model);
-    const bool in_doubt = piece.bounds.empty();  // even then there is a likeliest offset
+    const bool in_doubt = piece.bounds.empty();  // a doubtful piece also gets a likeliest offset
     if (in_doubt) piece = collect(walk, p, {}, model);
     if (piece.up > 0 && piece.down > 0 && counted_like_the_host(piece))
       fit(piece, walk.least_width, walk.pieces[p].assumptions, model);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clock of one node over a whole recording: the result of the live clock, computed again with
-// all later exchanges.
+// The clock of one node over a whole recording. It repeats the live clock's computation with all
+// later exchanges.
 #pragma once
 
 #include "kinalign/clock/host_from_node.h"
@@ -11,10 +11,10 @@
 
 namespace kinalign {
 
-/// Withdrawals become doubtful stretches of the model.
+/// The live clock's withdrawals are doubtful stretches of the model.
 struct OfflineClock {
   HostFromNode model;
-  std::vector<ClockEvent> events;  // events of the live clock, without the withdrawals
+  std::vector<ClockEvent> events;  // events of the live clock, without withdrawals
 };
 
 /// Exchanges must be in the order of arrival.

@@ -14,20 +14,20 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double bin_s = 10.0;
 constexpr std::size_t lows_each = 12;
-constexpr std::size_t bins_around = 5;  // on each side; they tell how sharp a floor is
-constexpr int first_looks = 4;  // each one improves the lines from which the next one starts
-constexpr std::size_t least_bounds = 20;  // bounds of each kind, for a separate route
-constexpr double same_crystal = 1e-6;     // possible difference of the slopes of two routes
+constexpr std::size_t bins_around = 5;  // windows on each side that give the density at a floor
+constexpr int first_looks = 4;  // each pass improves the lines with which the next pass begins
+constexpr std::size_t least_bounds = 20;  // bounds of each kind that a route of its own needs
+constexpr double same_crystal = 1e-6;     // possible difference between the slopes of two routes
 constexpr double least_variance = 1e-14;
 
-/// The changes of route, found by a pass through the bounds in their order, and the slope known
-/// before each. The crystal is the same on all routes, so the slope serves as prior.
+/// The changes of route, found by a pass through the bounds in their order, and the slope before
+/// each change. The crystal is the same on all routes, so the slope is used as a prior.
 struct Changes {
   std::vector<double> at;
   std::vector<SlopeBelief> slopes;  // on the routes before each change, and on the last route
 };
 
-/// Runs the live estimate through the bounds to find the changes of route.
+/// Passes the bounds to the live estimate, which finds the changes of route.
 Changes find_changes(const std::vector<Bound>& bounds) {
   OffsetEstimate estimate;
   Changes changes;
@@ -55,8 +55,8 @@ struct Span {
   double slope = 0.0;  // approximate
 };
 
-/// The spans between changes of route. Short ones, during which the route was changing, are left
-/// out.
+/// Returns the spans between changes of route. Short spans are omitted, because the route was
+/// changing in them.
 std::vector<Span> routes_between(const std::vector<Bound>& bounds, const Changes& changes) {
   double begin = bounds.front().s, end = begin;
   for (const Bound& b : bounds) {
@@ -77,7 +77,7 @@ std::vector<Span> routes_between(const std::vector<Bound>& bounds, const Changes
   return spans;
 }
 
-/// Keeps the lowest bounds, in rising order, after removing the slope.
+/// Stores the lowest bounds, in rising order, after subtracting the slope.
 void keep_low(std::vector<OffsetBound>& lows, OffsetBound bound, double slope) {
   const auto lower = [slope](const OffsetBound& a, const OffsetBound& b) {
     return a.x - slope * a.s < b.x - slope * b.s;
@@ -88,8 +88,8 @@ void keep_low(std::vector<OffsetBound>& lows, OffsetBound bound, double slope) {
 
 }  // namespace
 
-// Routes first, then all bounds into their route, then the shifts that join the routes. Bounds
-// between two routes belong to none.
+// The routes are found first. Then each bound is added to its route, and the shifts that join the
+// routes are computed. Bounds between two routes are not used.
 OfflineEstimate::OfflineEstimate(const std::vector<Bound>& bounds) {
   const Changes changes = find_changes(bounds);
   const std::vector<Span> spans = routes_between(bounds, changes);
@@ -121,7 +121,8 @@ void OfflineEstimate::add(Stretch& stretch, const Bound& b, double slope) {
   keep_low(up ? lows.above : lows.below, bound, up ? slope : -slope);
 }
 
-/// The middle of one route; the lowest bounds around t tell how sharp its floors are.
+/// Returns the middle of one route at t. The lowest bounds around t show how well its floors are
+/// known.
 Middle OfflineEstimate::middle(const Stretch& stretch, double t) {
   Middle known = stretch.last;
   const auto bin = static_cast<std::size_t>(
@@ -138,8 +139,9 @@ Middle OfflineEstimate::middle(const Stretch& stretch, double t) {
   return stretch.route.middle_elsewhere(t, known);
 }
 
-/// Finds the shift of each route by least squares: small compared with the range of its round trip,
-/// and so that the offset is continuous at changes of route. The equations are tridiagonal.
+/// Computes the shift of each route by least squares. Shifts should be small compared with the
+/// round trip, and the offset should be continuous at changes of route. The equations are
+/// tridiagonal.
 void OfflineEstimate::join() {
   const std::size_t n = stretches_.size();
   if (n < 2) return;
@@ -184,9 +186,9 @@ double OfflineEstimate::least_round_trip() const {
 double OfflineEstimate::at(double t) {
   auto stretch = std::find_if(stretches_.begin(), stretches_.end() - 1,
                               [t](const Stretch& s) { return t < s.end; });
-  // A time between two routes goes to the nearer one.
+  // A time between two routes uses the nearer route.
   if (stretch != stretches_.begin() && stretch->begin - t > t - (stretch - 1)->end) --stretch;
-  // Kept as the line from which the next call starts; neighbouring times have nearly the same line.
+  // The next call begins with this line, because neighbouring times have nearly the same line.
   stretch->last = middle(*stretch, t);
   return stretch->last.value + stretch->moved;
 }

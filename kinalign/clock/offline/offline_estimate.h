@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The likeliest offset at any time of a piece. Each route is fitted to all of its bounds, and the
-// routes are joined by the continuity of the offset.
+// The likeliest offset at any time of a piece. Each route is fitted to all its bounds. The routes
+// are joined, because the offset is continuous.
 #pragma once
 
 #include "kinalign/clock/bound.h"
@@ -13,16 +13,16 @@ namespace kinalign {
 
 class OfflineEstimate {
  public:
-  /// `bounds` are in the order in which they became known.
+  /// `bounds` must be in the order in which the live clock got them.
   explicit OfflineEstimate(const std::vector<Bound>& bounds);
 
-  /// x(t); fastest if t rises from call to call. Needs a bound of each kind.
+  /// Returns x(t). The call is fastest if t rises from call to call. Needs a bound of each kind.
   double at(double t);
   std::size_t routes() const { return stretches_.size(); }
   double least_round_trip() const;  // s
 
  private:
-  /// The lowest bounds of ten seconds; they tell how sharp a floor is around that time.
+  /// The lowest bounds of ten seconds. They show how well a floor is known around that time.
   struct Lows {
     std::vector<OffsetBound> above, below;
   };
@@ -31,7 +31,7 @@ class OfflineEstimate {
     Route route;
     std::vector<Lows> lows;
     Middle last;
-    double moved = 0.0;  // shift that joins it to the other routes
+    double moved = 0.0;  // shift that joins this route to the other routes
   };
   static void add(Stretch& stretch, const Bound& bound, double slope);
   static Middle middle(const Stretch& stretch, double t);

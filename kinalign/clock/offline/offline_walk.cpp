@@ -8,14 +8,14 @@ namespace kinalign {
 
 namespace {
 
-// Events after which the live clock has a new piece.
+// Returns whether the live clock begins a new piece with this event.
 bool begins_piece(ClockEvent::Kind kind) {
   using Kind = ClockEvent::Kind;
   return kind == Kind::new_boot || kind == Kind::step || kind == Kind::slip ||
          kind == Kind::settled || kind == Kind::host_backwards;
 }
 
-/// The host's clock went back at exchange i. Arrivals that its clock shows twice are in doubt.
+/// The host's clock went back at exchange i. The times that the clock shows twice are doubtful.
 void doubt_repeated_times(OfflineWalk& walk, std::size_t i, const ClockEvent& event) {
   HostTime newest = event.begin;
   for (std::size_t k = i; k < walk.exchanges.size() && newest < event.end; ++k) {
@@ -26,12 +26,11 @@ void doubt_repeated_times(OfflineWalk& walk, std::size_t i, const ClockEvent& ev
   if (twice.begin <= twice.end) walk.doubtful.push_back(twice);
 }
 
-/// Records an event of exchange i. Exchanges from the beginning of a new piece on are assigned to
-/// it.
+/// Records an event of exchange i. If a new piece begins, its exchanges are assigned to the piece.
 void note(OfflineWalk& walk, std::size_t i, const ClockEvent& event, Side of,
           const ClockPiece& now) {
   if (event.kind == ClockEvent::Kind::withdrawn) {
-    // Reported before, except for a step that a reboot cut short.
+    // The cause was reported before, except if a reboot came before a step was confirmed.
     const ClockEvent& why = walk.events.back();
     const HostTime end = begins_piece(why.kind) ? why.begin - Duration{1} : event.end;
     if (event.begin <= end) walk.doubtful.push_back({event.begin, end});
@@ -46,18 +45,18 @@ void note(OfflineWalk& walk, std::size_t i, const ClockEvent& event, Side of,
   walk.pieces.push_back({now.assumptions(), now.certified_from()});
   const auto is_of_it = [&](std::size_t k) {
     const Exchange& e = walk.exchanges[k];
-    // Earlier exchanges keep their piece.
+    // Only this exchange moves to the new piece.
     if (event.kind == ClockEvent::Kind::host_backwards) return k == i;
     return e.h_rx >= event.begin && (walk.late[k] || e.boot == event.boot);
   };
-  // A step is noticed some crossings after it happened. The exchanges in between move to the new
-  // piece.
+  // A step is noticed some exchanges after it happened. The exchanges in between are assigned to
+  // the new piece.
   for (std::size_t k = i + 1; k-- > 0 && is_of_it(k);) walk.piece[k] = next;
 }
 
-/// A crossing that was left out may be the first after a step that was undone, or that a reboot or
-/// the end cut short. The live clock withdraws the five seconds before it; the five seconds after
-/// it are in doubt as well.
+/// An ignored crossing may be the first after a step that was not confirmed, because the counter
+/// stepped back, rebooted or the recording ended. The live clock withdraws the five seconds before
+/// the crossing. The five seconds after it are doubtful as well.
 void doubt_behind_violators(OfflineWalk& walk) {
   for (std::size_t i = 0; i < walk.exchanges.size(); ++i) {
     if (!walk.up_left_out[i] && !walk.echo_left_out[i]) continue;
@@ -67,7 +66,7 @@ void doubt_behind_violators(OfflineWalk& walk) {
   }
 }
 
-/// Merges overlapping stretches; the result is in rising order.
+/// Merges overlapping stretches. The result is in rising order.
 std::vector<DoubtfulStretch> merged(std::vector<DoubtfulStretch> all) {
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.begin < b.begin; });
   std::vector<DoubtfulStretch> out;
@@ -81,12 +80,12 @@ std::vector<DoubtfulStretch> merged(std::vector<DoubtfulStretch> all) {
   return out;
 }
 
-/// Records the clock's events of exchange i, or of its echo.
+/// Records the live clock's events after exchange i or its echo.
 void observe(OfflineWalk& walk, std::size_t i, LiveClock& clock, Side of) {
   for (const ClockEvent& event : clock.take_events()) note(walk, i, event, of, *clock.piece());
 }
 
-// Events that end a piece, even if a step of it is not confirmed yet.
+// Returns whether the event ends a piece even if a step is not confirmed yet.
 bool cuts_short(ClockEvent::Kind kind) {
   return kind == ClockEvent::Kind::new_boot || kind == ClockEvent::Kind::host_backwards;
 }
@@ -109,7 +108,7 @@ OfflineWalk walk_offline(std::span<const Exchange> exchanges, const Assumptions&
   LiveClock clock(assumptions);
   for (std::size_t i = 0; i < exchanges.size(); ++i) {
     const Exchange& e = exchanges[i];
-    // The newest piece so far. `note` changes it if a piece begins with this exchange.
+    // The newest piece so far. `note` changes this value if a piece begins with this exchange.
     walk.piece[i] = walk.pieces.empty() ? 0 : walk.pieces.size() - 1;
     const auto late = clock.late_crossings();
     const auto unsettled = clock.unsettled_since();
@@ -120,13 +119,13 @@ OfflineWalk walk_offline(std::span<const Exchange> exchanges, const Assumptions&
     }
     observe(walk, i, clock, Side::above);
     walk.earliest = std::min(walk.earliest, e.h_rx);
-    if (unsettled && cuts_short(walk.events.back().kind))  // the clock will not settle any more
+    if (unsettled && cuts_short(walk.events.back().kind))  // the clock was waiting after a step
       walk.doubtful.push_back({*unsettled, exchanges[i - 1].h_rx});
     if (e.echo) {
       clock.push_down(e.boot, e.echo->n_rx, e.echo->h_tx);
       observe(walk, i, clock, Side::below);
     }
-    // A call refreshes the estimate, so this walk sees the same as a clock in use.
+    // The call updates the estimate, so that the walk gives the same result as a clock in use.
     static_cast<void>(clock.host_from_node(e.boot, e.n_tx));
   }
   if (const ClockPiece* last = clock.piece()) {

@@ -14,10 +14,9 @@ namespace kinalign {
 namespace {
 
 constexpr double step_s = 1.0;
-constexpr double rate_known = 5e-6;  // chosen: the edge of the hull under the middle gives the rate
-                                     // so well after half a minute
-// Chosen: on a busy radio link delays vary by more, but not the least delay of each of three
-// seconds.
+constexpr double rate_known = 5e-6;  // chosen: error of the rate of a piece of half a minute
+// Chosen: on a busy radio link the delays vary by more than this. The least delay of three
+// consecutive seconds does not.
 constexpr double leap_s = 0.05;
 constexpr std::size_t leap_seconds = 3, rate_seconds = 30;
 
@@ -26,14 +25,14 @@ struct Stretch {
   std::size_t begin = 0, end = 0;
 };
 
-/// The least bound of each second, by the device's clock, that had an arrival.
+/// The least bound of each second (on the device's clock) that had an arrival.
 struct Low {
   std::size_t first = 0;  // first exchange of that second
   std::int64_t second = 0;
   double s = 0.0, x = 0.0;
 };
 
-/// The lows of a stretch, in seconds from its first exchange.
+/// Computes the least bounds of a stretch, in seconds from its first exchange.
 std::vector<Low> lows_of(std::span<const Exchange> exchanges, Stretch stretch) {
   const ClockOrigin origin{exchanges[stretch.begin].n_tx, exchanges[stretch.begin].h_rx};
   std::vector<Low> lows;
@@ -49,17 +48,16 @@ std::vector<Low> lows_of(std::span<const Exchange> exchanges, Stretch stretch) {
   return lows;
 }
 
-/// The lowest of three seconds. A single second, in which all packets were delayed, shows no level.
+/// Returns the lowest of three seconds. In a single second all packets may have been delayed.
 const Low& level_at(const std::vector<Low>& lows, std::size_t from) {
   const auto begin = lows.begin() + static_cast<std::ptrdiff_t>(from);
   return *std::min_element(begin, begin + leap_seconds,
                            [](const Low& a, const Low& b) { return a.x < b.x; });
 }
 
-/// True if the three seconds from k on all lie on another level than those before, on the same
-/// side. The rate in between is that of the half minute before.
-/// A late arrival raises a bound, and none comes early. A leap moves the least bound of each of
-/// three seconds, which delays do not.
+/// Returns whether the offset jumps at second k: the three seconds from k on differ from the
+/// seconds before by more than leap_s, all in the same direction. The expected offset follows the
+/// rate of the half minute before. Delays can raise the bound of a single second, but not of three.
 bool leaps(const std::vector<Low>& lows, std::size_t first, std::size_t k) {
   if (k < first + leap_seconds || k + leap_seconds > lows.size()) return false;
   const Low& before = level_at(lows, k - leap_seconds);
@@ -75,8 +73,8 @@ bool leaps(const std::vector<Low>& lows, std::size_t first, std::size_t k) {
   return above == leap_seconds || below == leap_seconds;
 }
 
-/// Position of the leap within its second: before the greatest change from one exchange to the
-/// next.
+/// Returns the exchange of the jump within its second: the one with the greatest change from its
+/// predecessor.
 std::size_t place_of_leap(std::span<const Exchange> exchanges, const Low& before, const Low& behind,
                           std::size_t end) {
   const auto level = [&](std::size_t i) {
@@ -95,7 +93,7 @@ std::size_t place_of_leap(std::span<const Exchange> exchanges, const Low& before
   return place;
 }
 
-/// Splits the exchanges of one boot at leaps.
+/// Splits the exchanges of one boot at jumps.
 std::vector<Stretch> even_stretches(std::span<const Exchange> exchanges, Stretch boot) {
   std::vector<Stretch> out;
   const std::vector<Low> lows = lows_of(exchanges, boot);
@@ -113,8 +111,8 @@ std::vector<Stretch> even_stretches(std::span<const Exchange> exchanges, Stretch
   return out;
 }
 
-/// A knot at each second that had an arrival, and at its neighbours. A straight line spans a
-/// silence, which has no samples.
+/// Returns the times of the knots: each second with an arrival, and its neighbours. A straight line
+/// covers a pause, which has no samples.
 std::vector<double> knots_of(std::span<const Exchange> exchanges, const ClockOrigin& origin,
                              double begin, double end) {
   std::vector<std::int64_t> seconds;
@@ -136,8 +134,8 @@ std::vector<double> knots_of(std::span<const Exchange> exchanges, const ClockOri
   return knots;
 }
 
-// Only upper bounds exist, so the offset is the upper envelope that the curvature allows. All
-// packets may be late by the same least delay, which nothing here can show.
+// There are only upper bounds. The offset is therefore the greatest function that the bounds and
+// the curvature allow. All packets may be late by the same least delay, which arrivals can't show.
 ClockPieceModel fit(std::span<const Exchange> exchanges, Stretch stretch, double curvature) {
   const Exchange& front = exchanges[stretch.begin];
   const ClockOrigin origin{front.n_tx, front.h_rx};
@@ -155,11 +153,11 @@ ClockPieceModel fit(std::span<const Exchange> exchanges, Stretch stretch, double
     model.first = std::min(model.first, exchanges[i].h_rx);
     model.last = std::max(model.last, exchanges[i].h_rx);
   }
-  // No lower bounds: `certified` stays false.
+  // There are no lower bounds, so `certified` stays false.
   model.up = stretch.end - stretch.begin;
-  // The edge of the hull under the middle gives the rate. Near the ends of the piece, a corner is
-  // merely some packet that arrived there. The offset may deviate from that rate only by as much as
-  // the rate may have changed meanwhile.
+  // The edge of the hull at the middle of the piece gives the rate. A corner near an end of the
+  // piece may be any packet that arrived there. The offset may deviate from the rate only as far as
+  // the rate may have changed.
   const double middle = straight.peak((begin + end) / 2.0).slope;
   const double rate = std::isfinite(middle) ? middle : 0.0;
   const double change = rate_known + curvature * (end - begin) / 2.0;
