@@ -19,8 +19,8 @@ namespace kinalign {
 
 namespace {
 
-/// Marks the groups that fits need: the fitted groups and those they are fitted onto. The pass for
-/// fits reads only these and the reference.
+/// Returns for each group whether a fit needs it: groups that are fitted, and groups onto which
+/// others are fitted. The pass for fits reads only these groups and the reference.
 std::vector<bool> groups_of_fits(const std::vector<SpacePlan>& spaces, std::size_t groups) {
   std::vector<bool> out(groups, false);
   for (const SpacePlan& space : spaces) {
@@ -29,8 +29,8 @@ std::vector<bool> groups_of_fits(const std::vector<SpacePlan>& spaces, std::size
   return out;
 }
 
-/// Fits the rigid transform of a space to the pairs of joints that were collected in `moments`. The
-/// moments are sums, so no row has to be kept for the fit.
+/// Fits the rigid transform of a space to the pairs of joints summed in `moments`. The sums suffice
+/// for the fit, so no row is stored.
 Result<void> fit_space(const PairMoments& moments, const std::string& name, SpacePlan& space) {
   if (moments.count == 0) {
     return Failure(Error{name, 0, "rows for a fit, with tracked joints of both streams",
@@ -42,14 +42,13 @@ Result<void> fit_space(const PairMoments& moments, const std::string& name, Spac
     return Failure(std::move(fitted).error());
   }
   space.transform = *fitted;
-  // A small distance from the line is no error here; judge_fit() makes a warning of it.
+  // Joints close to one line are not an error here; judge_fit() warns about them.
   space.off_line_m = spread_off_line(moments);
   return {};
 }
 
-/// Finds the fitted transforms in one pass over the streams concerned. All fits share the pass. The
-/// rows are those of the take itself, so the fit sees the same resampled points that it moves
-/// later.
+/// Computes the fitted transforms in one pass over the streams that need one. The pass makes the
+/// same rows as the take itself, so the fit uses the same resampled points that are moved later.
 Result<void> fit_spaces(const Recording& recording, const AlignPlan& plan,
                         std::vector<SpacePlan>& spaces, const Progress& progress,
                         std::size_t jobs) {
@@ -71,7 +70,7 @@ Result<void> fit_spaces(const Recording& recording, const AlignPlan& plan,
   return {};
 }
 
-/// Adds the counts of a stream's rows in one slab.
+/// Adds the counts of one stream's rows in a slab.
 void add_marks(const TakeSlab& slab, const TakeHeader& header, const RecordedStream& s,
                const StreamPlan& stream, Marks& marks) {
   const auto& rows = slab.rows[stream.group];
@@ -80,20 +79,21 @@ void add_marks(const TakeSlab& slab, const TakeHeader& header, const RecordedStr
   } else if (const auto* points = std::get_if<PointRows>(&rows)) {
     add_marks(*points, std::get<PointInput>(s.data).joint_names.size(), marks);
   } else {
-    // Streams of nodes count only their own columns of the group.
+    // A stream of nodes counts only its own columns of the group.
     const auto& group = std::get<ImuGroup>(header.groups[stream.group].kind);
     add_marks(std::get<ImuRows>(rows), {stream.first_node, group.node_names.size()},
               std::get<ImuInput>(s.data).node_names.size(), marks);
   }
 }
 
-/// Removes folders from file names, because a take must not depend on the place of its inputs.
+/// Removes folders from file names, because a take must not depend on the location of its inputs.
 Findings without_folders(Findings findings) {
   for (Finding& finding : findings) finding.what.file = file_name(finding.what.file);
   return findings;
 }
 
-/// Begins the report with everything known before the rows: findings of files, stamps and the plan.
+/// Begins the report with all facts that are known before the first row: the findings about files,
+/// stamps and the plan.
 AlignmentReport begin_report(const Recording& recording, const AlignPlan& plan) {
   AlignmentReport report;
   report.frames = plan.header.frames;
@@ -113,13 +113,13 @@ AlignmentReport begin_report(const Recording& recording, const AlignPlan& plan) 
   return report;
 }
 
-/// Counts over all slabs. Slabs are handed on and forgotten, so everything that the report says
-/// about rows is counted here.
+/// Counts over all slabs. Each slab is passed on and not kept, so all facts about rows in the
+/// report are counted here.
 struct Counts {
   std::uint64_t rows = 0;
   Time begin{}, end{};                  // first and last row
-  std::vector<ResidualSums> residuals;  // per space
-  std::vector<Marks> marks;             // per stream
+  std::vector<ResidualSums> residuals;  // for each space
+  std::vector<Marks> marks;             // for each stream
 };
 
 Counts no_counts(const Recording& recording, const std::vector<SpacePlan>& spaces) {
@@ -130,7 +130,7 @@ Counts no_counts(const Recording& recording, const std::vector<SpacePlan>& space
   return out;
 }
 
-/// The plan and the spaces of one call of align(). The references are valid during that call.
+/// The plan and the spaces of one call of align(). The members are valid during that call.
 struct Job {
   const Recording& recording;
   const AlignPlan& plan;
@@ -138,15 +138,16 @@ struct Job {
 };
 
 /// The error if the reference now has another number of frames than in the first pass. The header
-/// already states the number, and a file with fewer rows than its header says would be broken.
+/// already states that number, and a file with another number of rows would be inconsistent.
 Error other_length(const Job& job, std::uint64_t rows) {
   return {job.recording.streams[job.plan.reference].name, 0,
           fmt::format("{} frames, as in the first reading", job.plan.header.frames),
           fmt::format("{}", rows)};
 }
 
-/// Moves the points of a slab into their spaces, counts its rows, and passes it to the sink. The
-/// order matters: rows that lose their root become invalid and must be counted as such.
+/// Moves the points of a slab into their spaces, counts its rows, and passes the slab to the sink.
+/// Rows without their root joint become invalid when they are moved, so they are counted after
+/// that.
 Result<void> pass_slab(const Job& job, TakeSlab& slab, const TakeSink& sink,
                        const Progress& progress, Counts& counts) {
   if (counts.rows == 0) counts.begin = slab.stamps.front();
@@ -165,8 +166,8 @@ Result<void> pass_slab(const Job& job, TakeSlab& slab, const TakeSink& sink,
   return Failure(interruption());
 }
 
-/// The report of one stream: counts of its window, counts of its rows, and the worst of its clock's
-/// intervals.
+/// Returns the report of one stream: the counts of its samples, the counts of its rows, and the
+/// widest time interval of its clock.
 StreamReport report_stream(const Job& job, const SlabMaker& slabs, const Counts& counts,
                            std::size_t i) {
   const StreamCounts seen = slabs.counts(i);
@@ -191,8 +192,8 @@ StreamReport report_stream(const Job& job, const SlabMaker& slabs, const Counts&
   out.bridged = marks.bridged;
   out.unsure = marks.unsure;
   out.worst_nearest_ns = marks.worst_nearest_ns;
-  // A clock of several pieces is judged by the widest interval; pieces of unknown accuracy don't
-  // count.
+  // If the clock has several pieces, the widest interval counts. Pieces without an interval are
+  // ignored.
   for (const TimeModelPiece& piece : s.clock.pieces) {
     if (!piece.half_width) continue;
     out.worst_interval_ns = std::max(out.worst_interval_ns.value_or(0), piece.half_width->count());
@@ -200,8 +201,8 @@ StreamReport report_stream(const Job& job, const SlabMaker& slabs, const Counts&
   return out;
 }
 
-/// Completes the report after the last row and sorts the findings by severity. The sort is stable:
-/// findings of equal severity stay in the order of the streams.
+/// Completes the report after the last row and sorts the findings by severity. Findings of equal
+/// severity stay in the order of the streams.
 void finish_report(const Job& job, const SlabMaker& slabs, const Counts& counts,
                    AlignmentReport& report) {
   report.begin = counts.begin;
@@ -231,14 +232,14 @@ void finish_report(const Job& job, const SlabMaker& slabs, const Counts& counts,
 
 Result<AlignmentReport> align(const Recording& recording, const Manifest& manifest,
                               const TakeSink& sink, const Progress& progress, std::size_t jobs) {
-  // No value is read before the plan and the spaces are complete, so an error of the manifest shows
-  // at once.
+  // The plan and the spaces are made before any value is read, so an error in the manifest is
+  // reported at once.
   const AlignPlan plan = KA_TRY(plan_alignment(recording, manifest));
   const std::size_t reference_group = plan.streams[plan.reference].group;
   auto spaces = KA_TRY(plan_spaces(plan.header, manifest, reference_group));
   KA_TRY(fit_spaces(recording, plan, spaces, progress, jobs));
 
-  // The sink learns the number of rows first, and may create its file only now.
+  // The sink needs the number of rows before it creates its file.
   KA_TRY(sink.begin(plan.header));
   SlabMaker slabs =
       KA_TRY(SlabMaker::start(recording, plan, std::vector<bool>(plan.header.groups.size(), true)));
@@ -247,7 +248,7 @@ Result<AlignmentReport> align(const Recording& recording, const Manifest& manife
   KA_TRY(slabs.for_each(
       jobs, [&](TakeSlab& slab) { return pass_slab(job, slab, sink, progress, counts); }));
   if (counts.rows != plan.header.frames) return Failure(other_length(job, counts.rows));
-  // Findings that come after a stream's last row would otherwise depend on the take's span.
+  // The rest of each stream is read, so that findings do not depend on the time span of the take.
   KA_TRY(slabs.read_rest([&]() -> Result<void> {
     if (go_on(progress, "aligning", counts.rows, plan.header.frames)) return {};
     return Failure(interruption());

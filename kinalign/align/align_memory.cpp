@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Alignment into memory: collects the slabs in a Take.
+// Aligns a recording into memory: collects the slabs in a Take.
 #include "kinalign/align/align.h"
 
 namespace kinalign {
@@ -11,7 +11,7 @@ Result<Take> align(const Recording& recording, const Manifest& manifest) {
     take.header = header;
     return {};
   };
-  // The slab is reused for the next rows, so it is copied.
+  // The slab is reused for the next rows, so its rows are copied.
   sink.rows = [&take](const TakeSlab& slab) -> Result<void> {
     append_rows(take.all, slab);
     return {};

@@ -7,9 +7,9 @@ namespace kinalign {
 
 namespace {
 
-/// Reads one stream block by block. The window computes the arrivals on the way and keeps only the
-/// samples of one call. Copies of the returned function share one window, so each continues where
-/// another stopped.
+/// Returns a function that reads one stream block by block. The window measures the arrivals while
+/// it reads, and stores only the samples of one block. Copies of the function share one window, so
+/// each copy continues where another copy stopped.
 template <class Frames>
 ReadNext reading(Pass<Frames> pass, const RecordedStream& stream, const TakenStep& step,
                  Arrivals& out, std::uint64_t& rows) {
@@ -22,7 +22,7 @@ ReadNext reading(Pass<Frames> pass, const RecordedStream& stream, const TakenSte
       return std::optional<std::int64_t>();
     }
     rows += window->time_ns.size();
-    // Each call asks for samples after the last one, so the window drops all that were counted.
+    // The next call asks for samples after this one, so the window drops the counted samples.
     from = window->time_ns.back() + 1;
     return std::optional(window->time_ns.back());
   };
@@ -46,7 +46,8 @@ Result<std::vector<Arrivals>> arrivals_of(
         },
         streams[i].data));
   }
-  // The streams are read side by side, so streams of one recording share its chunks.
+  // The streams are read in parallel, so that streams of one recording decode each of its chunks
+  // once.
   KA_TRY(read_side_by_side(passes, [&]() -> Result<void> {
     if (go_on(progress, "checking", rows, all)) return {};
     return Failure(interruption());

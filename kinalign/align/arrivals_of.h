@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads every sample of some streams, only to find samples that were stamped late. `check` reports
-// the result.
+// Reads all samples of streams to find samples that were stamped too late. `check` reports the
+// result.
 #pragma once
 
 #include "kinalign/core/progress.h"
@@ -14,9 +14,9 @@
 
 namespace kinalign {
 
-/// Measures how late the samples of each stream were stamped. `step_of` gives a stream's usual step
-/// as alignment uses it (taken_step()). All streams are read to their ends in parallel. Fails if a
-/// value can't be read.
+/// Measures how late the samples of each stream were stamped. `step_of` returns the usual step of a
+/// stream as alignment uses it (taken_step()). All streams are read to their ends in parallel.
+/// Fails if a value can't be read.
 Result<std::vector<Arrivals>> arrivals_of(
     const std::vector<RecordedStream>& streams,
     const std::function<TakenStep(const RecordedStream&)>& step_of, const Progress& progress);

@@ -11,40 +11,40 @@ namespace kinalign {
 
 namespace {
 
-/// The part of the clock offset that start_ns added, if the stream has several files. A single file
-/// takes start_ns as the stamp of its first row instead and needs no offset.
+/// Returns the part of the clock offset that start_ns caused. Only streams of several files have
+/// such a part. A single file uses start_ns as the stamp of its first row and needs no offset.
 Duration own_offset(const RecordedStream& s, const StreamOptions& options) {
   return s.clock.pieces.front().offset - Duration{std::llround(options.offset_ms * 1e6)};
 }
 
-/// Findings name a file, or the stream if it comes from memory.
+/// Returns the name of the stream's file, or the stream's name if it comes from memory.
 std::string file_of(const RecordedStream& s) {
   return s.files.empty() ? s.name : s.files.front().name;
 }
 
-/// The steps between kept samples of a device that stamps its samples, ns. Absent for counted
-/// stamps, which are regular by construction, and for too few samples.
+/// The steps between the accepted samples of a device that stamps its samples, ns.
 struct Steps {
   double median = 0.0, mean = 0.0;
   std::uint64_t long_ones = 0;
-  double long_share = 0.0;  // share of the stream's time in long steps
+  double long_share = 0.0;  // share of the stream's time that is in long steps
 };
 
+/// Absent for counted stamps, which are always regular, and for too few samples.
 std::optional<Steps> steps_of(const RecordedStream& s) {
   constexpr std::uint64_t enough = 10;
   const StampSurvey& survey = s.survey;
   if (s.counted || survey.kept() < enough || survey.median_step_ns == 0) return std::nullopt;
   const double all = static_cast<double>(to_ns(survey.last) - to_ns(survey.first));
-  // The mean includes pauses, the median does not. Their ratio shows whether a device pauses or
-  // bursts.
+  // The mean includes pauses, the median does not. A large ratio means that the device pauses or
+  // sends in bursts.
   return Steps{static_cast<double>(survey.median_step_ns),
                all / static_cast<double>(survey.kept() - 1), survey.long_steps,
                static_cast<double>(survey.long_time_ns) / all};
 }
 
-/// Warns about the unit of stamps. A wrong unit changes the rate by at least a thousand, .NET ticks
-/// by a hundred, and no device in this field is so fast or slow. Cameras reach 1,000 frames per
-/// second, inertial sensors 2,000.
+/// Warns if the unit of the stamps is probably wrong. A wrong unit changes the rate by a factor of
+/// at least 1000 (100 for .NET ticks). The resulting rates are impossible: cameras reach 1,000
+/// frames per second, inertial sensors 2,000 samples.
 void judge_unit(const Steps& steps, const RecordedStream& s, FileFindings& out) {
   const double fastest_hz = std::holds_alternative<ImuInput>(s.data) ? 2500.0 : 1200.0;
   constexpr double slowest_hz = 0.5;
@@ -57,10 +57,10 @@ void judge_unit(const Steps& steps, const RecordedStream& s, FileFindings& out) 
       "if a layout reads the stamps, correct the unit in its [time]: ns, us, ms, s or ticks_100ns");
 }
 
-/// Warns if a stated rate fits neither the median step nor the mean step. A device that sends in
-/// bursts fits by its mean only.
+/// Warns if the stated rate differs from both the median step and the mean step. If a device sends
+/// in bursts, only the mean step is right.
 void judge_stated(const Steps& steps, double nominal_hz, FileFindings& out) {
-  // A step fits the stated one if the two differ by less than this factor.
+  // A step agrees with the stated rate if they differ by less than this factor.
   constexpr double alike = 1.5;
   const auto fits = [nominal_hz](double step) {
     return step < alike * 1e9 / nominal_hz && alike * step > 1e9 / nominal_hz;
@@ -73,16 +73,16 @@ void judge_stated(const Steps& steps, double nominal_hz, FileFindings& out) {
           fmt::format("set rate_hz = {:.3g}, or remove it", 1e9 / steps.median));
 }
 
-/// Warns if a stream stands still for more than half of its time. Either the device paused, or
-/// samples came in bursts and were stamped on arrival. Stamps can't tell which; the user can. Ten
-/// trials have nine pauses.
+/// Warns if a stream has no samples for more than half of its time. Either the device paused, or
+/// samples came in bursts and were stamped on arrival. The stamps can't show which of the two is
+/// true. Ten trials have nine pauses between them, so up to `pauses` long steps give no warning.
 void judge_rate(const Steps& steps, FileFindings& out) {
   constexpr double gap_steps = 3.0, burst = 5.0, alike = 1.5;
   constexpr std::uint64_t pauses = 10;
   if (steps.long_ones <= pauses || steps.long_share < 0.5 || steps.mean < alike * steps.median) {
     return;
   }
-  // The mean step counts all time, so it gives the rate if samples came in bursts.
+  // The mean step includes all time, so it gives the rate if samples came in bursts.
   const double from_mean = 1e9 / steps.mean;
   std::string found, meaning, repair;
   if (steps.mean < burst * steps.median) {
@@ -108,10 +108,10 @@ void judge_rate(const Steps& steps, FileFindings& out) {
 
 }  // namespace
 
-/// All judgements about stamps, from the survey's counts. No sample is read.
+/// Judges the stamps by the counts of the survey. No sample is read.
 Findings judge_stamps(const RecordedStream& s, const StreamOptions& options) {
   FileFindings out{file_of(s)};
-  // Single samples are sometimes sent twice; many duplicates have another cause.
+  // A few samples are sometimes sent twice. Many duplicates have another cause.
   const bool often = s.survey.duplicates > 10 && 20 * s.survey.duplicates > s.survey.samples;
   if (s.survey.duplicates > 0) {
     out.add(often ? Severity::warning : Severity::note, "rising stamps",
@@ -125,7 +125,8 @@ Findings judge_stamps(const RecordedStream& s, const StreamOptions& options) {
             "these samples were left out");
   }
   if (s.survey.backward > 0) {
-    // After a clock was set back, all further stamps are before earlier ones, so there are many.
+    // After a clock was set back, all following stamps are before earlier ones, so their number is
+    // large.
     const bool many = 20 * s.survey.backward > s.survey.samples;
     out.add(
         many ? Severity::error : Severity::warning, "rising stamps",
@@ -147,8 +148,8 @@ Findings judge_stamps(const RecordedStream& s, const StreamOptions& options) {
   return out.all;
 }
 
-/// The severities follow the effect: dropped or late samples change the take, an irregular step
-/// only hides them.
+/// The severity depends on the effect. Dropped or late samples change the take; an irregular step
+/// only prevents their detection.
 Findings judge_arrivals(const RecordedStream& s, const Arrivals& arrivals, Role role) {
   FileFindings out{file_of(s)};
   if (arrivals.near > 0) {
@@ -180,8 +181,7 @@ Findings judge_arrivals(const RecordedStream& s, const Arrivals& arrivals, Role 
   return out.all;
 }
 
-/// Findings name a file. If several streams read that file, the file alone does not say which
-/// stream is meant.
+/// Findings name a file. If several streams read the file, the name of the stream is added.
 Findings with_stream_name(const RecordedStream& stream, const Recording& recording,
                           Findings findings) {
   const auto reads_the_same = [&](const RecordedStream& other) {
@@ -195,12 +195,13 @@ Findings with_stream_name(const RecordedStream& stream, const Recording& recordi
   return findings;
 }
 
-/// start_ns is the stamp of the first row. If that row is dropped or late, its error shifts the
-/// whole stream.
+/// start_ns is the stamp of the first row. If that row is dropped or late, the whole stream is
+/// shifted by the error.
 Findings judge_start(const RecordedStream& s, const StreamOptions& options,
                      const Arrivals& arrivals) {
   if (s.counted || !options.start_ns) return {};
-  const bool several = options.files.size() > 1;  // several files: the earliest kept sample has it
+  // With several files, the earliest accepted sample has the stamp start_ns.
+  const bool several = options.files.size() > 1;
   const Time start = utc_time(*options.start_ns);
   if (several && s.survey.first + own_offset(s, options) != start) return {};
   const bool first_kept = several || s.survey.first == start;
@@ -214,9 +215,10 @@ Findings judge_start(const RecordedStream& s, const StreamOptions& options,
 }
 
 Findings judge_content(const RecordedStream& s, const ResampleCount& count, double grid_hz) {
-  // Below these limits a stream's noise looks like content. Chosen values: Kinect v2 joints at rest
-  // move by 0.1 to 0.9 mm, hand tips by 2.5 mm (measured on KinectMultiTrack). Inertial sensors of
-  // phones and trackers have about 0.02 m/s2 and 0.005 rad/s.
+  // Below these limits, the noise of a stream can't be distinguished from motion. Chosen values:
+  // Kinect v2 joints at rest move by 0.1 to 0.9 mm, hand tips by 2.5 mm (measured on
+  // KinectMultiTrack). Inertial sensors of phones and trackers have about 0.02 m/s2 and 0.005
+  // rad/s.
   constexpr double points_m = 0.002, acceleration_m_s2 = 0.05, angular_velocity_rad_s = 0.01;
   Findings out;
   const auto add = [&](const std::vector<CarriedContent>& contents, const std::string& quantity,

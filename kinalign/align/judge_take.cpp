@@ -9,8 +9,8 @@ namespace kinalign {
 
 namespace {
 
-/// A note on each stream of points or skeletons that keeps its own space, with its reason. It is
-/// only a note, since this can be intended.
+/// Makes a note for each stream of points or skeletons that keeps its own space, with the reason.
+/// It is only a note, since the user may want this.
 Findings judge_spaces(const TakeHeader& header) {
   Findings out;
   for (const TakeGroup& group : header.groups) {
@@ -34,8 +34,8 @@ Findings judge_spaces(const TakeHeader& header) {
   return out;
 }
 
-/// A warning for each file of nodes that has the same bytes as another one: it was named twice.
-/// Hashes are compared and not paths, so a copy is found, too.
+/// Warns about each file of nodes that has the same bytes as another file, because the user
+/// probably named it twice. Hashes are compared instead of paths, so a copy is found too.
 Findings judge_nodes_alike(const TakeHeader& header) {
   Findings out;
   for (const TakeGroup& group : header.groups) {
@@ -55,8 +55,8 @@ Findings judge_nodes_alike(const TakeHeader& header) {
   return out;
 }
 
-/// Warns if two streams read the same samples. One table may hold several bodies, so the same file
-/// with another selection is fine.
+/// Warns if two streams read the same samples. One table may contain several bodies, so the same
+/// file with different selections is no fault.
 Findings judge_streams_alike(const TakeHeader& header) {
   Findings out;
   const auto bytes_of = [](const TakeGroup& group) {
@@ -72,7 +72,7 @@ Findings judge_streams_alike(const TakeHeader& header) {
                  options_of(parameters, later->name).select;
     };
     const auto first = std::find_if(header.groups.begin(), later, same);
-    // Streams from memory have no files and are not compared.
+    // Streams from memory have no files to compare.
     if (first == later || later->files.empty()) continue;
     out.push_back(
         {Severity::warning,
@@ -85,15 +85,16 @@ Findings judge_streams_alike(const TakeHeader& header) {
   return out;
 }
 
-/// Warns if streams share little of their time. This is rarely intended: a wrong start time, or a
-/// device that stopped sending. If the body is at rest, no residual shows it.
+/// Warns if the streams have little time in common. The usual cause is a wrong start time, or a
+/// device that stopped sending. If the body is at rest, residuals don't show this fault.
 Findings judge_span(const Recording& recording, const AlignPlan& plan) {
   const auto span = [](const RecordedStream& s) { return seconds(last_of(s) - first_of(s)); };
   const auto& streams = recording.streams;
   const auto by = [](auto value) {
     return [value](const auto& a, const auto& b) { return value(a) < value(b); };
   };
-  // The two streams that bound the common span are named, since one of them may have a wrong start.
+  // The message names the two streams that limit the common time, since one of them may have a
+  // wrong start.
   const RecordedStream& late = *std::max_element(streams.begin(), streams.end(), by(first_of));
   const RecordedStream& early = *std::min_element(streams.begin(), streams.end(), by(last_of));
   const RecordedStream& brief = *std::min_element(streams.begin(), streams.end(), by(span));
@@ -122,8 +123,8 @@ Findings judge_span(const Recording& recording, const AlignPlan& plan) {
 
 }  // namespace
 
-/// These findings are known before the first row, but they are reported with the others after the
-/// last.
+/// These findings are known before the first row. They are reported with all others after the last
+/// row.
 Findings judge_plan(const Recording& recording, const AlignPlan& plan) {
   Findings out = judge_span(recording, plan);
   append(out, judge_spaces(plan.header));
@@ -133,7 +134,7 @@ Findings judge_plan(const Recording& recording, const AlignPlan& plan) {
 }
 
 Findings judge_rows(const StreamReport& stream, std::uint64_t rows) {
-  // Half of the rows is the limit; shorter absences are shown as gaps.
+  // The limit is half of the rows. Shorter absences are reported as gaps.
   if (2 * stream.empty_rows <= rows) return {};
   std::string name = stream.stream;
   if (stream.nodes.size() == 1) name += " " + shown(stream.nodes.front());
@@ -146,9 +147,8 @@ Findings judge_rows(const StreamReport& stream, std::uint64_t rows) {
 }
 
 Findings judge_residual(const SpaceReport& space) {
-  // Chosen: after a fit, Kinect v2 joints are 6 to 9 cm from optical ones (Keraal: 7.5; Xu and
-  // McGorry, Applied Ergonomics 2015); the worst other device has 21 cm. No correct fit is as bad
-  // as this limit.
+  // Chosen limit. After a correct fit, Kinect v2 joints are 6 to 9 cm from optical ones (Keraal:
+  // 7.5; Xu and McGorry, Applied Ergonomics 2015). The worst value of another device is 21 cm.
   constexpr double too_far_m = 0.3;
   if (!(space.after_m > too_far_m)) return {};
   return {
@@ -160,8 +160,8 @@ Findings judge_residual(const SpaceReport& space) {
 }
 
 Findings judge_fit(const SpacePlan& plan, const SpaceReport& space) {
-  // Chosen: the joints of a trunk are 3 to 6 cm from their line, those of a whole body 20 cm and
-  // more.
+  // Chosen limit. The joints of a trunk are 3 to 6 cm from a line through them, those of a whole
+  // body at least 20 cm.
   constexpr double near_m = 0.1;
   if (plan.options.method != "fit" || plan.off_line_m >= near_m) return {};
   std::string names;

@@ -9,9 +9,9 @@ namespace kinalign {
 
 namespace {
 
-/// Adds one valid sample. `row`: its index in the distances. `cell`: its index in over_loss.
+/// Adds one valid sample. `row` is its index in the distances, `cell` its index in over_loss.
 void add_valid(const SampleDistance& distance, std::size_t row, std::size_t cell, Marks& marks) {
-  // A reference has no distances: all of its vectors are empty and nothing is added.
+  // A reference has no distances: its vectors are empty, so nothing is added.
   if (!distance.over_loss.empty()) marks.bridged += distance.over_loss[cell];
   if (!distance.time_interval_ns.empty()) {
     marks.unsure += distance.time_interval_ns[row] == no_interval ? 1 : 0;
@@ -23,7 +23,7 @@ void add_valid(const SampleDistance& distance, std::size_t row, std::size_t cell
 }  // namespace
 
 void add_marks(const ClipRows& rows, Marks& marks) {
-  // The reference skeleton has an empty `valid`, so it adds no sample.
+  // For the reference skeleton `valid` is empty, so no sample is added.
   marks.samples += rows.valid.size();
   for (std::size_t r = 0; r < rows.valid.size(); ++r) {
     if (rows.valid[r] == 0) {
@@ -51,8 +51,8 @@ void add_marks(const PointRows& rows, std::size_t joints, Marks& marks) {
 }
 
 void add_marks(const ImuRows& rows, const NodeColumns& columns, std::size_t count, Marks& marks) {
-  // A group's rows contain the nodes of other streams, too; only `count` columns from `first` are
-  // counted.
+  // The rows of a group also contain the nodes of other streams. Only `count` columns from `first`
+  // on are counted.
   for (std::size_t row = 0; row < rows.valid.size(); row += columns.all) {
     std::uint64_t valid = 0;
     for (std::size_t cell = row + columns.first; cell < row + columns.first + count; ++cell) {

@@ -10,11 +10,11 @@ namespace kinalign {
 
 namespace {
 
-/// Copies columns of the stream's rows into the group's rows; `width` values per node.
+/// Copies columns of the stream's rows into the group's rows. Each node has `width` values.
 template <class T>
 void put_columns(const std::vector<T>& from, std::size_t width, std::size_t rows,
                  const NodeColumns& columns, std::vector<T>& to) {
-  // A quantity that the stream lacks stays empty in the group, too.
+  // A quantity that the stream does not have stays empty in the group.
   if (from.empty() || rows == 0) return;
   const std::size_t take = from.size() / rows;
   const std::size_t stride = columns.all * width, first = columns.first * width;
@@ -32,15 +32,15 @@ void put_nodes(const ImuRows& from, std::size_t rows, const NodeColumns& columns
   put_columns(from.angular_velocity, 3, rows, columns, to.angular_velocity);
   put_columns(from.valid, 1, rows, columns, to.valid);
   put_columns(from.distance.nearest_raw_ns, 1, rows, columns, to.distance.nearest_raw_ns);
-  // Nodes without intervals get no_interval if others have them.
+  // If other nodes have intervals, nodes without intervals get no_interval.
   auto& intervals = to.distance.time_interval_ns;
   if (!from.distance.time_interval_ns.empty()) intervals.resize(rows * columns.all, no_interval);
   put_columns(from.distance.time_interval_ns, 1, rows, columns, intervals);
   put_columns(from.distance.over_loss, 1, rows, columns, to.distance.over_loss);
 }
 
-/// With a root node the vectors are already in the world (ImuResampler::rows), so a mounting does
-/// not concern them. Without one they are in the sensor's axes and are turned into the bone's.
+/// With a root node the vectors are already in the world (ImuResampler::rows), so the mounting does
+/// not change them. Without a root node, they are converted from the sensor's axes to the bone's.
 void apply_mounting(const ImuGroup& group, const Mounting& mounting, ImuRows& rows) {
   const std::size_t nodes = group.node_names.size();
   for (std::size_t s = 0; s < nodes; ++s) {
@@ -69,8 +69,8 @@ void apply_mounting(const ImuGroup& group, const Mounting& mounting, ImuRows& ro
 
 namespace {
 
-/// Sets all nodes of a row to zero and to not valid: without the root no node can be brought into
-/// its space.
+/// Sets all nodes of a row to zero and invalid. Without the root, no node can be converted to the
+/// root's space.
 void clear_row(const ImuGroup& group, std::size_t first, ImuRows& rows) {
   const std::size_t nodes = group.node_names.size();
   const auto zero = [first, nodes](std::vector<double>& values, std::size_t width) {
@@ -85,14 +85,15 @@ void clear_row(const ImuGroup& group, std::size_t first, ImuRows& rows) {
   std::fill(valid, valid + static_cast<std::ptrdiff_t>(nodes), std::uint8_t{0});
 }
 
-/// The root node of one row, in the world.
+/// Orientation and acceleration of the root node in one row. The acceleration is in the world's
+/// axes.
 struct RootPose {
   Quat to_root;
   Vec3 acceleration;
 };
 
-/// Brings one node of a row into the root's space. The root's acceleration is subtracted in the
-/// world, before the rotation. Gravity disappears with it.
+/// Converts one node of a row to the root's space. The root's acceleration is subtracted in the
+/// world's axes, before the rotation. This also removes gravity.
 void turn_node(const RootPose& root, bool is_root, std::size_t i, ImuRows& rows) {
   if (!is_root) put_quat(rows.orientation, i, root.to_root * quat(rows.orientation, i));
   if (!rows.acceleration.empty()) {
@@ -116,7 +117,7 @@ void bring_to_root(const ImuGroup& group, ImuRows& rows) {
       clear_row(group, first, rows);
       continue;
     }
-    // The root's pose is read before the loop changes its row.
+    // The root's pose is read before the loop changes the row.
     RootPose pose{quat(rows.orientation, first + root).conjugate(), Vec3::Zero()};
     if (group.content.acceleration) {
       pose.acceleration = vec3(std::span(rows.acceleration), first + root);
@@ -130,7 +131,7 @@ void bring_to_root(const ImuGroup& group, ImuRows& rows) {
 namespace {
 
 /// Rotates the vectors of one node from the root's space into the node's own space.
-/// `root_acceleration` is in the world; adding it returns the gravity that the difference removed.
+/// `root_acceleration` is in the world. Adding it restores gravity.
 void turn_back(const Quat& from_root, const Vec3& root_acceleration, std::size_t i, ImuRows& rows) {
   const Quat to_node = quat(rows.orientation, i).conjugate();
   if (!rows.acceleration.empty()) {
@@ -152,14 +153,15 @@ void bring_from_root(const ImuGroup& group, ImuRows& rows) {
     if (rows.valid[first + root] == 0) continue;
     const Quat from_root = quat(rows.orientation, first + root);
     Vec3 acceleration = Vec3::Zero();
-    // The root's acceleration was only rotated, so rotating it back gives the world's.
+    // The root's own acceleration was only rotated, so the inverse rotation gives its value in the
+    // world.
     if (!rows.acceleration.empty()) {
       acceleration = from_root * vec3(std::span(rows.acceleration), first + root);
     }
     for (std::size_t i = first; i < first + nodes; ++i) {
       if (rows.valid[i] == 0) continue;
       const bool is_root = i == first + root;
-      // The orientation comes first, because turn_back() uses it in the world.
+      // The orientation is converted first, because turn_back() needs the orientation in the world.
       if (!is_root) put_quat(rows.orientation, i, from_root * quat(rows.orientation, i));
       turn_back(from_root, is_root ? Vec3::Zero() : acceleration, i, rows);
     }

@@ -10,8 +10,8 @@ namespace kinalign {
 void fill_positions(const Skeleton& skeleton, ClipRows& rows, std::size_t count) {
   const std::size_t width = skeleton.joints() * 3;
   ClipFrames frames;
-  // forward_kinematics() takes frames. The arrays are lent to it by swaps, so nothing is copied. It
-  // uses no stamp, only their number.
+  // forward_kinematics() takes frames. The arrays are swapped into `frames` and back, so nothing is
+  // copied. Only the number of stamps matters, not their values.
   frames.stamps.resize(count);
   frames.local_positions.swap(rows.local_positions);
   frames.local_rotations.swap(rows.local_rotations);
@@ -19,7 +19,7 @@ void fill_positions(const Skeleton& skeleton, ClipRows& rows, std::size_t count)
   forward_kinematics(skeleton, frames, rows.positions);
   rows.local_positions.swap(frames.local_positions);
   rows.local_rotations.swap(frames.local_rotations);
-  // Invalid rows have rotations of zeros, which give no meaningful positions.
+  // Invalid rows contain rotations of zeros, which give no meaningful positions.
   for (std::size_t r = 0; r < rows.valid.size(); ++r) {
     if (rows.valid[r] == 0) std::fill_n(&rows.positions[r * width], width, 0.0);
   }

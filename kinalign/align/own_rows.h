@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the rows of a take from a stream's own frames, without resampling.
+// Makes rows of a take directly from a stream's frames, without resampling.
 #pragma once
 
 #include "kinalign/motion/clip.h"
@@ -10,10 +10,11 @@
 
 namespace kinalign {
 
-/// Computes global positions of all `count` rows from the local ones; zeros for rows that are not
-/// valid.
+/// Computes the global positions of all `count` rows from the local positions and rotations.
+/// Invalid rows get zeros.
 void fill_positions(const Skeleton& skeleton, ClipRows& rows, std::size_t count);
 
+/// All rows are valid; `valid` stays empty.
 ClipRows own_rows(const Skeleton& skeleton, ClipFrames frames);
 /// A point is valid unless it is missing.
 PointRows own_rows(PointFrames frames);

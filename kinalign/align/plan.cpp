@@ -24,7 +24,7 @@ Result<std::size_t> find_reference(const Recording& recording, const Manifest& m
   return Failure(unknown_name(wanted, "a stream as the reference", known));
 }
 
-/// The spans of all streams as text, for errors in which they do not overlap.
+/// Returns the time spans of all streams as text, for the error that they do not overlap.
 std::string spans(const Recording& recording) {
   std::string text;
   for (const RecordedStream& s : recording.streams) {
@@ -36,24 +36,25 @@ std::string spans(const Recording& recording) {
   return text;
 }
 
-/// The error for a stream without samples: the error that its reader found, or else a general one.
+/// Returns the error for a stream without samples: the error of its reader, or else a general
+/// error.
 Error no_samples(const RecordedStream& s, const Recording& recording) {
   Findings all = all_findings(s);
   if (s.shared_file) append(all, recording.shared_files[*s.shared_file].findings);
   const auto worst = std::max_element(
       all.begin(), all.end(), [](const auto& a, const auto& b) { return a.severity < b.severity; });
-  // The reader's own error says why nothing could be read, which helps more than the bare fact.
+  // The reader's own error tells why nothing could be read, so it is more helpful.
   if (worst != all.end() && worst->severity == Severity::error) return worst->what;
   return {s.files.empty() ? "" : s.files.front().name, 0,
           "at least one sample for stream '" + s.name + "'", "none"};
 }
 
-/// Sets the plan's begin and end to the time that all streams share.
+/// Sets the plan's begin and end to the time span that all streams share.
 Result<void> find_span(const Recording& recording, AlignPlan& plan) {
   plan.begin = Time::min();
   plan.end = Time::max();
   for (const RecordedStream& s : recording.streams) {
-    // A stream without samples has no span. Its error names the cause and not the times.
+    // A stream without samples has no time span. Its error names the cause instead.
     if (s.survey.kept() == 0) return Failure(no_samples(s, recording));
     plan.begin = std::max(plan.begin, first_of(s));
     plan.end = std::min(plan.end, last_of(s));
@@ -65,8 +66,9 @@ Result<void> find_span(const Recording& recording, AlignPlan& plan) {
   return {};
 }
 
-/// The first of the frames 0..count-1 at a fixed step whose take time is at or after `bound` (for
-/// `behind`: after it). Take times rise with the frame number, so the frame is found by bisection.
+/// For a stream with a fixed step: returns the first frame whose time in the take is at or after
+/// `bound` (if `behind`: after `bound`). The times rise with the frame number, so bisection finds
+/// the frame.
 std::uint64_t first_frame(const RecordedStream& s, double step_ns, Time bound, bool behind) {
   std::uint64_t low = 0, high = s.survey.samples;
   while (low < high) {
@@ -81,8 +83,8 @@ std::uint64_t first_frame(const RecordedStream& s, double step_ns, Time bound, b
   return low;
 }
 
-/// Counts the rows of a pass over the reference that are kept and within the common span. It uses
-/// the same Window as SlabMaker, so both agree on which rows are kept.
+/// Counts the rows of the reference that are accepted and within the common time span. SlabMaker
+/// uses the same Window class, so both accept the same rows.
 template <class Frames>
 Result<std::uint64_t> count_in_span(Pass<Frames> pass, const RecordedStream& reference,
                                     const AlignPlan& plan) {
@@ -98,8 +100,8 @@ Result<std::uint64_t> count_in_span(Pass<Frames> pass, const RecordedStream& ref
   }
 }
 
-/// A pass over rows that have stamps but no values. It lets a window count rows without reading the
-/// file again.
+/// Returns a pass over rows that have stamps but no values. With this pass a window can count rows
+/// without reading the file again.
 Pass<PointFrames> stamps_alone(std::shared_ptr<const std::vector<Time>> stamps) {
   return [stamps = std::move(stamps), is_done = false](PointFrames& block) mutable -> Result<bool> {
     block = {};
@@ -110,10 +112,10 @@ Pass<PointFrames> stamps_alone(std::shared_ptr<const std::vector<Time>> stamps) 
   };
 }
 
-/// The number of rows of the grid. With a fixed step it is computed. If nothing is cut, it is the
-/// number of kept samples. Otherwise it is counted from the reference's stamps, which are read
-/// again if they are not known. The survey judged the device's stamps; on the take's axis a drift
-/// or a clock of several pieces may keep other rows.
+/// Returns the number of rows of the grid. With a fixed step it is computed. If the whole reference
+/// is used, it is the number of accepted samples. Otherwise the reference's stamps are counted; if
+/// they are not in memory, they are read again. The survey can't be used then, because it judged
+/// the device's stamps. After conversion to the take's time axis, other rows may be accepted.
 Result<std::uint64_t> count_rows(const RecordedStream& reference, const AlignPlan& plan) {
   if (reference.step_ns) {
     return first_frame(reference, *reference.step_ns, plan.end, true) -
@@ -133,21 +135,21 @@ Result<std::uint64_t> count_rows(const RecordedStream& reference, const AlignPla
       reference.data);
 }
 
-/// The rule of a stream: its period, the longest stretch to interpolate over, and the curve for
-/// rotations.
+/// Returns the parameters for resampling a stream: its step, the longest gap to interpolate, and
+/// the curve for rotations.
 ResampleRule rule_of(const RecordedStream& s, const StreamOptions& stream,
                      const AlignOptions& options) {
   ResampleRule rule;
   rule.step_ns = usual_step_ns(s, stream);
   rule.gap_ns = options.gap_ms > 0.0 ? std::llround(options.gap_ms * 1e6) : 3 * rule.step_ns;
-  // Stamps rounded to milli- or microseconds can make three steps slightly longer than three
-  // medians.
+  // If stamps are rounded to milli- or microseconds, three steps may be slightly longer than three
+  // median steps.
   if (options.gap_ms == 0.0) rule.gap_ns += rule.step_ns / 10;
   rule.curve = options.rotations == "slerp" ? RotationCurve::slerp : RotationCurve::spline;
   return rule;
 }
 
-/// The kind of a group follows from the stream's data.
+/// The kind of a group is given by the stream's data.
 std::variant<ClipGroup, PointGroup, ImuGroup> kind_of(const RecordedStream& s,
                                                       const StreamOptions& options) {
   if (const auto* clip = std::get_if<ClipInput>(&s.data)) return ClipGroup{clip->skeleton};
@@ -156,7 +158,8 @@ std::variant<ClipGroup, PointGroup, ImuGroup> kind_of(const RecordedStream& s,
   return ImuGroup{imu.node_names, imu.content, options.root_node};
 }
 
-/// The space of a stream's positions: that of the reference, or that of a stream that is not moved.
+/// Returns the space of a stream's positions: the reference's space, or the stream's own space if
+/// it is not moved.
 std::string space_of(const std::string& stream, const std::string& reference,
                      const Manifest& manifest) {
   const auto found = manifest.spaces.find(stream);
@@ -165,13 +168,13 @@ std::string space_of(const std::string& stream, const std::string& reference,
   return in.empty() || in == reference ? "take" : in;
 }
 
-/// A stream's file and kind, for example "kinect.csv (points)".
+/// Returns a stream's file and kind as text, for example "kinect.csv (points)".
 std::string file_and_kind(const std::vector<InputFacts>& files, std::size_t kind) {
   constexpr std::array<std::string_view, 3> kinds{"a skeleton", "points", "nodes"};
   return fmt::format("{} ({})", files.empty() ? "memory" : files.front().name, kinds[kind]);
 }
 
-/// Adds a further stream of nodes to the group of its name.
+/// Adds another stream of nodes to the group with the same name.
 Result<void> join(TakeGroup& group, const RecordedStream& s) {
   auto* nodes = std::get_if<ImuGroup>(&group.kind);
   const auto* imu = std::get_if<ImuInput>(&s.data);
@@ -185,7 +188,7 @@ Result<void> join(TakeGroup& group, const RecordedStream& s) {
     return Failure(Error{"", 0, "nodes of '" + s.name + "' that measure the same quantities",
                          "'" + imu->node_names.front() + "', which measures other quantities"});
   }
-  // Node names are unique in a group, because they are the names of its columns.
+  // Node names are unique in a group, because they name its columns.
   for (const std::string& node : imu->node_names) {
     if (std::find(nodes->node_names.begin(), nodes->node_names.end(), node) !=
         nodes->node_names.end()) {
@@ -197,14 +200,14 @@ Result<void> join(TakeGroup& group, const RecordedStream& s) {
   const auto is_known = [&group](const InputFacts& facts) {
     return std::find(group.files.begin(), group.files.end(), facts) != group.files.end();
   };
-  // Nodes of one recording name the same files; each file is listed once in the group.
+  // All nodes of one recording have the same files, so each file is listed once in the group.
   const bool one_recording =
       s.format == "recording" && std::all_of(s.files.begin(), s.files.end(), is_known);
   if (!one_recording) group.files.insert(group.files.end(), s.files.begin(), s.files.end());
   return {};
 }
 
-/// Plans each stream and puts it into a group; streams of nodes with the same name share one.
+/// Plans each stream and assigns it to a group. Streams of nodes with the same name share a group.
 Result<void> make_groups(const Recording& recording, const Manifest& manifest, AlignPlan& plan) {
   auto& groups = plan.header.groups;
   const RecordedStream& reference = recording.streams[plan.reference];
@@ -218,8 +221,8 @@ Result<void> make_groups(const Recording& recording, const Manifest& manifest, A
                                    i == plan.reference ? Role::reference : Role::resampled);
     stream.rule.begin_ns = to_ns(plan.begin);
     stream.rule.end_ns = to_ns(plan.end);
-    // The grid is coarser than the stream if its step is clearly longer. Only then can it lose
-    // content.
+    // The grid is coarser than the stream if its step is clearly longer. Only a coarser grid can
+    // lose fast motion.
     stream.rule.finer =
         static_cast<double>(stream.rule.step_ns) < 0.9 * static_cast<double>(grid.step_ns);
     const auto same = std::find_if(groups.begin(), groups.end(),
@@ -231,7 +234,7 @@ Result<void> make_groups(const Recording& recording, const Manifest& manifest, A
                         resampled && any_known(s.clock), s.files,
                         space_of(s.name, reference.name, manifest)});
     } else {
-      // The columns of a further stream of nodes begin after those that the group already has.
+      // The columns of a further stream of nodes follow the columns that the group already has.
       if (const auto* nodes = std::get_if<ImuGroup>(&same->kind)) {
         stream.first_node = nodes->node_names.size();
       }
@@ -242,7 +245,7 @@ Result<void> make_groups(const Recording& recording, const Manifest& manifest, A
   return {};
 }
 
-/// The error for a name under `key` that is not a node of the group.
+/// Returns the error for a name under `key` that is no node of the group.
 Error unknown_node(const TakeGroup& group, const std::vector<std::string>& nodes,
                    const StreamOptions& options, const std::string& name, const std::string& key) {
   Error error = unknown_name(name, "a node of '" + group.name + "' for " + key, nodes);
@@ -251,7 +254,7 @@ Error unknown_node(const TakeGroup& group, const std::vector<std::string>& nodes
   return error;
 }
 
-/// Fails if a root_node is not a node of its stream, or has no orientations.
+/// Fails if a root_node is not a node of its stream or if the nodes have no orientations.
 Result<void> check_roots(const TakeHeader& header, const Manifest& manifest) {
   for (const TakeGroup& group : header.groups) {
     const auto* nodes = std::get_if<ImuGroup>(&group.kind);
@@ -269,8 +272,8 @@ Result<void> check_roots(const TakeHeader& header, const Manifest& manifest) {
   return {};
 }
 
-/// Fails if a mounting is given for a node that its stream does not have. A misspelt name would
-/// leave the node without its mounting.
+/// Fails if a mounting is given for a node that its stream does not have. Otherwise a misspelt name
+/// would be ignored.
 Result<void> check_mountings(const TakeHeader& header, const Manifest& manifest) {
   for (const TakeGroup& group : header.groups) {
     const auto* nodes = std::get_if<ImuGroup>(&group.kind);
@@ -289,7 +292,7 @@ Result<void> check_nodes(const TakeHeader& header, const Manifest& manifest) {
   return check_mountings(header, manifest);
 }
 
-/// The names become groups of the take, so they are checked before anything else.
+/// The names become groups of the take, so they are checked first.
 Result<void> check_streams(const Recording& recording) {
   if (recording.streams.empty()) return Failure(Error{"", 0, "at least one stream", "none"});
   for (const RecordedStream& stream : recording.streams) KA_TRY(check_stream_name(stream.name));
@@ -308,12 +311,13 @@ Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& man
   AlignPlan plan;
   plan.reference = KA_TRY(find_reference(recording, manifest));
   const RecordedStream& reference = recording.streams[plan.reference];
-  // Streams of nodes share a group and may have different stamps, so none of them can be the grid.
+  // Streams of nodes share a group although their stamps may differ, so none of them can be the
+  // grid.
   if (std::holds_alternative<ImuInput>(reference.data)) {
     return Failure(
         Error{"", 0, "a skeleton or points as the reference (reference = in [align])", "nodes"});
   }
-  // The order of the checks decides which of several faults is reported.
+  // If there are several faults, the first check that fails decides which one is reported.
   KA_TRY(check_options_used(recording, manifest));
   KA_TRY(find_span(recording, plan));
   KA_TRY(make_groups(recording, manifest, plan));
@@ -321,8 +325,8 @@ Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& man
   plan.header.subject = recording.subject;
   plan.header.action = recording.action;
   plan.header.parameters = manifest;
-  // The header must be complete before the first row, so the rows are counted last, when the span
-  // is known.
+  // The header must be complete before the first row. The rows are counted last, because the count
+  // needs the time span.
   plan.header.frames = KA_TRY(count_rows(reference, plan));
   if (plan.header.frames == 0) {
     return Failure(Error{"", 0, "frames of '" + reference.name + "' in the common span",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// q and -q are the same rotation. In a take each valid rotation has the sign that is nearer to the
-// previous valid one, also across gaps and slabs. Plots of the components then do not jump, and
-// users may interpolate components between two rows.
+// The quaternions q and -q are the same rotation. In a take each valid rotation gets the sign that
+// is nearer to the previous valid rotation, also across gaps and slabs. Plots of the components
+// then have no jumps, and users may interpolate components between two rows.
 #pragma once
 
 #include <cstddef>
@@ -17,12 +17,12 @@ class RotationSigns {
   /// `columns`: number of joints or nodes.
   explicit RotationSigns(std::size_t columns) : last_(4 * columns, 0.0) {}
 
-  /// `rotations` [n,columns,4] follow those of the last call. `valid`: [n,columns] or [n]; empty:
-  /// all are valid.
+  /// Changes signs in `rotations` [n,columns,4], which are the rows after those of the previous
+  /// call. `valid`: [n,columns] or [n]; empty: all are valid.
   void align(std::span<double> rotations, std::span<const std::uint8_t> valid);
 
  private:
-  /// [columns,4] the last valid rotation; zeros before the first one, which change no sign.
+  /// [columns,4] the last valid rotation; zeros before the first one, which change no sign
   std::vector<double> last_;
 };
 

@@ -12,8 +12,8 @@ namespace kinalign {
 
 namespace {
 
-/// Number of values in a row of a group. A joint of a skeleton has 3 + 3 + 4, a point 3 and a
-/// state. A node has 4 + 3 + 3 and some for its quality.
+/// Returns the number of values in a row of a group. A joint of a skeleton has 3 + 3 + 4 values, a
+/// point 3 and a state. A node has 4 + 3 + 3 values and some about its quality.
 std::size_t width(const TakeGroup& group) {
   if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return 10 * clip->skeleton.joints();
   if (const auto* points = std::get_if<PointGroup>(&group.kind)) {
@@ -22,22 +22,22 @@ std::size_t width(const TakeGroup& group) {
   return 12 * std::get<ImuGroup>(group.kind).node_names.size();
 }
 
-/// Number of rotations in a row of a group.
+/// Returns the number of rotations in a row of a group.
 std::size_t rotations_of(const TakeGroup& group) {
   if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return clip->skeleton.joints();
   if (const auto* nodes = std::get_if<ImuGroup>(&group.kind)) return nodes->node_names.size();
   return 0;
 }
 
-/// Fewer rows for wide takes, so that a slab has about slab_bytes; at least 16, so that even the
-/// widest take goes on.
+/// Returns the number of rows of a slab. If the rows of a take are wide, it is reduced so that a
+/// slab has about slab_bytes, but never below 16.
 std::size_t rows_at_once(const TakeHeader& header) {
   std::size_t numbers = 1;
   for (const TakeGroup& group : header.groups) numbers += width(group);
   return std::clamp<std::size_t>(slab_bytes / (sizeof(double) * numbers), 16, slab_rows);
 }
 
-/// Pulls the rows of the reference within the common span from a window.
+/// Takes the reference's rows within the common time span from a window.
 template <class Frames>
 class ReferenceRows {
  public:
@@ -48,21 +48,21 @@ class ReferenceRows {
         begin_(to_ns(plan.begin)),
         end_(to_ns(plan.end)) {}
 
-  /// Moves the frames of the next slab into `out`, and their stamps into `grid`.
+  /// Moves the frames of the next slab to `out` and writes their stamps to `grid`.
   Result<void> next(Frames& out, std::vector<std::int64_t>& grid) {
     out = {};
     grid.clear();
     KA_TRY(window_.fill(begin_, most_rows_));
     const auto& stamps = window_.time_ns;
     const auto first = std::lower_bound(stamps.begin(), stamps.end(), begin_);
-    // A slow reference would otherwise need hours of the other streams for one slab.
+    // If the reference is slow, the limit prevents a slab from needing hours of the other streams.
     const std::int64_t until = first == stamps.end() ? end_ : *first + longest_slab_ns;
     const auto last = std::upper_bound(first, stamps.end(), std::min(end_, until));
     const std::size_t rows = std::min(static_cast<std::size_t>(last - first), most_rows_);
     if (rows == 0) return {};
     grid.assign(first, first + static_cast<std::ptrdiff_t>(rows));
     append_rows(out, window_.rows, static_cast<std::size_t>(first - stamps.begin()), rows);
-    // The next slab begins after the last row. Stamps rise strictly, so no row is skipped or
+    // The next slab begins after the last row. Stamps always rise, so no row is skipped or
     // repeated.
     begin_ = grid.back() + 1;
     return {};
@@ -77,32 +77,32 @@ class ReferenceRows {
 
 /// The rows of the reference in one slab.
 struct ReferenceSlab {
-  // Stamps of the rows, ns on the take's axis; empty after the last slab.
+  // Stamps of the rows, ns on the take's time axis. Empty after the last slab.
   std::vector<std::int64_t> grid;
   std::variant<ClipFrames, PointFrames> rows;
 };
 
-/// The state of a stream that is read. std::monostate: its group is not included in this pass.
+/// The state of a stream in this pass. std::monostate: its group is not included.
 using StreamRows =
     std::variant<std::monostate, ReferenceRows<ClipFrames>, ReferenceRows<PointFrames>,
                  PointResampler, ImuResampler, ClipResampler>;
 
 }  // namespace
 
-/// The streams of a pass, in the order of the recording. `recording` and `plan` are borrowed from
-/// the caller of start().
+/// The streams of a pass, in the order of the recording. The caller of start() owns `recording` and
+/// `plan`.
 struct SlabMaker::State {
   const Recording* recording = nullptr;
   const AlignPlan* plan = nullptr;
   std::vector<StreamRows> streams;
-  ImuRows nodes;                     // rows of one stream before they are copied into its group
-  std::vector<RotationSigns> signs;  // per group
-  std::vector<ReadNext> rests;       // for streams that must be read to their ends
+  ImuRows nodes;                     // rows of one stream, before they are copied into the group
+  std::vector<RotationSigns> signs;  // for each group
+  std::vector<ReadNext> rests;       // streams that must be read to their ends
   std::uint64_t rest_rows = 0;
   std::uint64_t done = 0;
 
   Result<void> open(std::size_t i);
-  /// Uses only the reference's stream; the functions below use only the other streams, so both may
+  /// Uses only the reference stream. The functions below use only the other streams, so both may
   /// run in parallel.
   Result<void> pull(ReferenceSlab& next);
   Result<void> make(ReferenceSlab& reference, TakeSlab& slab);
@@ -112,8 +112,8 @@ struct SlabMaker::State {
   void align_signs(TakeSlab& slab);
 };
 
-/// Opens a stream as reference rows or as a resampler. Copies of a pass share its place in the
-/// file. The copy in `rests` therefore goes on where the rows stopped.
+/// Opens a stream as reference rows or as a resampler. Copies of a pass share the position in the
+/// file, so the copy in `rests` continues where the rows stopped.
 Result<void> SlabMaker::State::open(std::size_t i) {
   const RecordedStream& s = recording->streams[i];
   const ResampleRule& rule = plan->streams[i].rule;
@@ -143,7 +143,7 @@ Result<void> SlabMaker::State::open(std::size_t i) {
   return {};
 }
 
-/// Takes the reference's rows of the next slab. An empty grid is the end of the take.
+/// Takes the reference's rows for the next slab. An empty grid means that the take has ended.
 Result<void> SlabMaker::State::pull(ReferenceSlab& next) {
   StreamRows& stream = streams[plan->reference];
   if (auto* clip = std::get_if<ReferenceRows<ClipFrames>>(&stream)) {
@@ -153,7 +153,7 @@ Result<void> SlabMaker::State::pull(ReferenceSlab& next) {
   return points.next(next.rows.emplace<PointFrames>(), next.grid);
 }
 
-/// The reference is not resampled: its frames are moved into the slab, and its stamps are the grid.
+/// The reference is not resampled. Its frames are moved into the slab, and its stamps are the grid.
 void SlabMaker::State::put_reference(ReferenceSlab& reference, TakeSlab& slab) const {
   const std::size_t group = plan->streams[plan->reference].group;
   for (const std::int64_t t : reference.grid) slab.stamps.push_back(utc_time(t));
@@ -183,7 +183,7 @@ Result<void> SlabMaker::State::other_rows(std::size_t i, std::span<const std::in
   } else if (auto* imu = std::get_if<ImuResampler>(&stream)) {
     const auto& nodes_group = std::get<ImuGroup>(plan->header.groups[group].kind);
     KA_TRY(imu->rows(grid, !nodes_group.root_node.empty(), nodes));
-    // The first stream of the group replaces the placeholder; the others add their columns.
+    // The first stream of the group replaces the empty rows; the other streams add their columns.
     if (!std::holds_alternative<ImuRows>(slab.rows[group])) slab.rows[group] = ImuRows{};
     put_nodes(nodes, grid.size(), {plan->streams[i].first_node, nodes_group.node_names.size()},
               std::get<ImuRows>(slab.rows[group]));
@@ -191,8 +191,8 @@ Result<void> SlabMaker::State::other_rows(std::size_t i, std::span<const std::in
   return {};
 }
 
-/// Mountings come first, since the root's space is the space of the root's bone. Both need all
-/// nodes of a row, so they wait until every stream has put its columns.
+/// Mountings are applied before the conversion to the root's space, because that space is the space
+/// of the root's bone. Both steps need all nodes of a row, so they follow after every stream.
 void SlabMaker::State::finish_nodes(TakeSlab& slab) const {
   for (std::size_t g = 0; g < slab.rows.size(); ++g) {
     const TakeGroup& group = plan->header.groups[g];
@@ -204,7 +204,7 @@ void SlabMaker::State::finish_nodes(TakeSlab& slab) const {
   }
 }
 
-/// Signs are chosen last, because every rotation before may change them.
+/// Signs are chosen last, because all earlier rotations may change them.
 void SlabMaker::State::align_signs(TakeSlab& slab) {
   for (std::size_t g = 0; g < slab.rows.size(); ++g) {
     if (auto* clip = std::get_if<ClipRows>(&slab.rows[g])) {
@@ -215,12 +215,12 @@ void SlabMaker::State::align_signs(TakeSlab& slab) {
   }
 }
 
-/// The rows of one slab: the reference, then all other streams on its stamps, then what needs whole
-/// groups.
+/// Makes the rows of one slab: the reference, then all other streams at its stamps, then the steps
+/// that need whole groups.
 Result<void> SlabMaker::State::make(ReferenceSlab& reference, TakeSlab& slab) {
   slab.first = done;
   slab.stamps.clear();
-  // Rows of groups that are not included stay as these empty ones.
+  // The rows of groups that are not included stay empty.
   slab.rows.assign(plan->header.groups.size(), ClipRows{});
   put_reference(reference, slab);
   for (std::size_t i = 0; i < streams.size(); ++i) {
@@ -250,8 +250,8 @@ Result<SlabMaker> SlabMaker::start(const Recording& recording, const AlignPlan& 
   return SlabMaker(std::move(state));
 }
 
-/// With two jobs, the reference's next slab is read on another thread while a slab is made and
-/// used. pull() and make() touch different members, so the result does not depend on `jobs`.
+/// With two jobs, another thread reads the reference's next slab while a slab is made and used.
+/// pull() and make() use different members, so the result does not depend on `jobs`.
 Result<void> SlabMaker::for_each(std::size_t jobs,
                                  const std::function<Result<void>(TakeSlab&)>& use) {
   State& s = *state_;
@@ -267,15 +267,15 @@ Result<void> SlabMaker::for_each(std::size_t jobs,
         used = use(slab);
       }
     });
-    KA_TRY(std::move(used));  // errors of earlier rows first
+    KA_TRY(std::move(used));  // errors of earlier rows are returned first
     KA_TRY(std::move(pulled));
     std::swap(now, next);
   }
   return {};
 }
 
-/// Windows first: their counts must cover all samples up to the take's end. Then the streams with
-/// late findings are read to the end of their files.
+/// The windows are read first, because their counts must include all samples up to the take's end.
+/// Then streams with late findings are read to the end of their files.
 Result<void> SlabMaker::read_rest(const std::function<Result<void>()>& go) {
   for (StreamRows& stream : state_->streams) {
     KA_TRY(std::visit(
@@ -288,7 +288,7 @@ Result<void> SlabMaker::read_rest(const std::function<Result<void>()>& go) {
   return read_side_by_side(state_->rests, go);
 }
 
-/// Reference rows and unused streams have no content() and give empty counts.
+/// Reference rows and unused streams have no content(), so their counts are empty.
 ResampleCount SlabMaker::content(std::size_t stream) const {
   return std::visit(
       [](const auto& rows) -> ResampleCount {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the rows of a take in slabs: the reference unchanged, every other stream resampled onto it.
+// Makes the rows of a take in blocks ("slabs"). The reference is copied, and every other stream is
+// resampled to the reference's stamps.
 #pragma once
 
 #include "kinalign/align/plan.h"
@@ -11,21 +12,21 @@
 
 namespace kinalign {
 
-/// Most rows of a slab: enough that the overlap of windows costs little, and few enough for the
-/// second-level cache.
+/// Most rows of a slab. With more rows, a slab would not fit into the second-level cache. With
+/// fewer rows, samples near the ends of slabs would be processed twice too often.
 constexpr std::size_t slab_rows = 2048;
-/// A slab has fewer rows if the rows of a take are long: about this many bytes at most.
+/// Limit on the bytes of a slab. If rows are long, a slab has fewer rows.
 constexpr std::size_t slab_bytes = std::size_t{16} << 20;
-/// Longest slab, for any rate of the reference, because the other streams' samples of a slab are in
-/// memory.
+/// Longest time of a slab. All samples of the other streams within this time are in memory, so a
+/// slow reference needs this limit.
 constexpr std::int64_t longest_slab_ns = 120'000'000'000;
 
-/// One pass over the streams of a take. It keeps the place of each stream: a call continues where
-/// the last one ended, and the samples that later rows need stay in windows.
+/// One pass over the streams of a take. Each call continues in each stream where the previous call
+/// ended. Samples that later rows need are stored in windows.
 class SlabMaker {
  public:
-  /// Starts a pass over the streams of the groups marked in `groups` (in the order of the header;
-  /// the reference is always included). `recording` and `plan` must live longer.
+  /// Starts a pass over the groups marked in `groups` (in the order of the header; the reference is
+  /// always included). `recording` and `plan` must outlive the object.
   static Result<SlabMaker> start(const Recording& recording, const AlignPlan& plan,
                                  const std::vector<bool>& groups);
   SlabMaker(SlabMaker&&) noexcept;
@@ -34,18 +35,19 @@ class SlabMaker {
   SlabMaker& operator=(const SlabMaker&) = delete;
   ~SlabMaker();
 
-  /// Calls `use` with each slab of at most slab_rows rows, in order. Groups that are not included
-  /// have empty rows. Points are still in their own space. With two jobs the reference is read one
-  /// slab ahead.
+  /// Calls `use` with each slab, in order. A slab has at most slab_rows rows. Groups that are not
+  /// included have empty rows. Points are still in their own space. With two jobs the reference is
+  /// read one slab in advance.
   Result<void> for_each(std::size_t jobs, const std::function<Result<void>(TakeSlab&)>& use);
 
-  /// Continues reading to the end of the take. Streams that report findings only after their last
-  /// row are read to their end.
+  /// Reads on to the end of the take's time span. Some streams have findings only after their last
+  /// row, so these streams are read to their end.
   Result<void> read_rest(const std::function<Result<void>()>& go);
 
-  /// The content that the grid can't carry, for a stream (index in the recording), so far.
+  /// Returns the motion of a stream that is too fast for the grid, so far. `stream`: index in the
+  /// recording.
   ResampleCount content(std::size_t stream) const;
-  /// The counts of a stream so far.
+  /// Returns the counts of a stream so far.
   StreamCounts counts(std::size_t stream) const;
 
  private:

@@ -12,7 +12,7 @@ namespace kinalign {
 
 namespace {
 
-/// Nodes have no joints, so they have no place in a space: nullptr.
+/// Returns the joint names of a group. Nodes have no joints, so the result is nullptr for nodes.
 const std::vector<std::string>* joint_names(const TakeGroup& group) {
   if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return &clip->skeleton.joint_names;
   if (const auto* points = std::get_if<PointGroup>(&group.kind)) return &points->joint_names;
@@ -21,7 +21,7 @@ const std::vector<std::string>* joint_names(const TakeGroup& group) {
 
 Result<std::size_t> find_group(const TakeHeader& header, const std::string& name) {
   std::vector<std::string> known;
-  // Only groups with joints are candidates, also for the names that the error lists.
+  // Only groups with joints are possible, and the error lists only these groups.
   for (std::size_t g = 0; g < header.groups.size(); ++g) {
     if (joint_names(header.groups[g]) == nullptr) continue;
     if (header.groups[g].name == name) return g;
@@ -30,7 +30,7 @@ Result<std::size_t> find_group(const TakeHeader& header, const std::string& name
   return Failure(unknown_name(name, "a stream with joints in [space]", known));
 }
 
-/// `line`: the line of the manifest that names the joint, or 0.
+/// Returns the index of a joint. `line`: the manifest's line that names the joint, or 0.
 Result<std::size_t> known_joint(const TakeGroup& group, const std::string& name,
                                 std::int64_t line) {
   const auto& names = *joint_names(group);
@@ -41,15 +41,16 @@ Result<std::size_t> known_joint(const TakeGroup& group, const std::string& name,
   return Failure(std::move(error));
 }
 
-/// The pairs that the user names; else the usual ones; else joints with equal names. A named joint
-/// that is absent is an error, a usual one is left out.
+/// Returns the pairs that the user names, or else the usual pairs, or else joints with equal names.
+/// If a joint that the user names does not exist, that is an error. Usual pairs without both joints
+/// are omitted.
 Result<std::vector<JointPair>> find_pairs(const TakeGroup& from, const TakeGroup& onto,
                                           const SpaceOptions& options) {
   std::vector<JointPair> pairs;
   for (const auto& [a, b] : options.joints) {
     const std::int64_t line = line_of(options.lines, "joints");
     const std::size_t other = KA_TRY(known_joint(onto, b, line));
-    // Two joints on one counterpart would weigh it twice and can't both be right.
+    // Two joints can't both correspond to one joint, and a fit would count that joint twice.
     const auto same = [other](const JointPair& pair) { return pair.onto == other; };
     if (std::any_of(pairs.begin(), pairs.end(), same)) {
       return Failure(
@@ -63,7 +64,8 @@ Result<std::vector<JointPair>> find_pairs(const TakeGroup& from, const TakeGroup
     const auto from_joint = index_of(ours, a), onto_joint = index_of(theirs, b);
     if (from_joint && onto_joint) pairs.push_back({*from_joint, *onto_joint});
   };
-  // Kinect to mocap pairs first: both have a Neck and a Head, but at different places.
+  // The usual pairs are tried before equal names. Both skeletons have a Neck and a Head, but at
+  // different places.
   for (const auto& [a, b] : usual_pairs()) add(a, b);
   if (pairs.empty()) {
     for (const std::string& name : ours) add(name, name);
@@ -71,13 +73,14 @@ Result<std::vector<JointPair>> find_pairs(const TakeGroup& from, const TakeGroup
   return pairs;
 }
 
-/// The transform that the options state; the identity if it has to be fitted.
+/// Returns the transform that the options state, or the identity if the transform will be fitted.
 Result<RigidTransform> given_transform(const SpaceOptions& options) {
   RigidTransform out;
   if (options.method == "paper") out.rotation = turn_about_y(options.rotation_y_deg);
   if (options.method != "given") return out;
   if (!options.rotation.empty()) {
-    // A quaternion far from length 1 is a mistake, such as angles; rounding is normalised.
+    // A quaternion whose length is far from 1 is a mistake, such as angles. Small deviations are
+    // normalised.
     const Quat q = quat(options.rotation, 0);
     if (!(q.norm() > 0.5 && q.norm() < 2.0)) {
       return Failure(Error{"", 0, "a unit quaternion w,x,y,z as rotation", "another length"});
@@ -88,10 +91,10 @@ Result<RigidTransform> given_transform(const SpaceOptions& options) {
   return out;
 }
 
-/// Global positions and validity of one group's joints in a slab.
+/// Global positions and validity of the joints of one group in a slab.
 struct JointColumn {
   std::span<const double> positions;
-  std::span<const std::uint8_t> valid;  // per row and joint, or per row; empty: all are valid
+  std::span<const std::uint8_t> valid;  // by row and joint, or by row; empty: all are valid
   std::span<const Tracking> state;      // empty: all are tracked
   std::size_t joints = 0;
 
@@ -104,7 +107,7 @@ struct JointColumn {
   Vec3 at(std::size_t row, std::size_t j) const { return vec3(positions, row * joints + j); }
 };
 
-/// A view into the slab's arrays. It is valid until the slab changes.
+/// Returns a view of the slab's arrays. It is valid until the slab changes.
 JointColumn column(const TakeSlab& slab, std::size_t group) {
   JointColumn out;
   if (const auto* clip = std::get_if<ClipRows>(&slab.rows[group])) {
@@ -117,8 +120,8 @@ JointColumn column(const TakeSlab& slab, std::size_t group) {
   return out;
 }
 
-/// Checks that points are moved onto another stream that is not moved itself. Chains of moves would
-/// depend on their order.
+/// Checks that points are moved onto a stream that is not moved itself. Otherwise the result would
+/// depend on the order of the moves.
 Result<void> check_method(const SpacePlan& plan, const TakeHeader& header,
                           const Manifest& manifest) {
   const TakeGroup &from = header.groups[plan.group], &onto = header.groups[plan.onto];
@@ -133,7 +136,7 @@ Result<void> check_method(const SpacePlan& plan, const TakeHeader& header,
   return {};
 }
 
-/// Finds the pairs of joints for a space, and for the method "paper" its two root joints.
+/// Finds the pairs of joints of a space. For the method "paper" it also finds the two root joints.
 Result<void> find_joints(const TakeHeader& header, SpacePlan& plan) {
   const TakeGroup &from = header.groups[plan.group], &onto = header.groups[plan.onto];
   plan.pairs = KA_TRY(find_pairs(from, onto, plan.options));
@@ -142,7 +145,7 @@ Result<void> find_joints(const TakeHeader& header, SpacePlan& plan) {
     plan.root = {KA_TRY(known_joint(from, plan.options.root, line_of(lines, "root"))),
                  KA_TRY(known_joint(onto, plan.options.onto_root, line_of(lines, "onto_root")))};
   }
-  // Three points not on a line determine a rigid transform.
+  // A rigid transform is determined by three points that are not on a line.
   if (plan.options.method == "fit" && plan.pairs.size() < 3) {
     return Failure(Error{"", line_of(plan.options.lines, "joints"),
                          "at least three named joints for a fit (joints = { ... })",
@@ -151,15 +154,16 @@ Result<void> find_joints(const TakeHeader& header, SpacePlan& plan) {
   return {};
 }
 
-/// Moves the points of a row. In the paper x' = m (A_rot x - A_offset) with A_offset = A_rot x_k0 -
-/// x_d0 / m, which puts the root at x_d0. A row in which the root was not seen becomes missing.
+/// Moves the points of a row. In the HFUT-MMD paper x' = m (A_rot x - A_offset) with A_offset =
+/// A_rot x_k0 - x_d0 / m, which moves the root x_k0 to x_d0. If the root was not seen in a row, the
+/// points of that row become missing.
 void move_row(const SpacePlan& plan, const JointColumn& onto, std::size_t row, std::size_t joints,
               PointRows& points) {
   RigidTransform transform = plan.transform;
   double m = 1.0;
   bool placed = true;
-  // The paper places each row anew, so both roots must be seen in it. A fitted or given transform
-  // is the same in every row.
+  // The method "paper" moves each row separately, so both roots must be valid in that row. A fitted
+  // or given transform is the same in every row.
   if (plan.options.method == "paper") {
     m = plan.options.magnification;
     const std::size_t root = row * joints + plan.root.from;
@@ -173,7 +177,7 @@ void move_row(const SpacePlan& plan, const JointColumn& onto, std::size_t row, s
     if (placed) {
       p = (m * (transform * p)).eval();
     } else {
-      // Missing cells hold zeros by definition, also in rows without a root.
+      // By definition missing points are zero.
       p.setZero();
       points.valid[cell] = 0;
       points.state[cell] = Tracking::missing;
@@ -189,7 +193,7 @@ Quat turn_about_y(double degrees) {
 
 std::vector<std::pair<std::string_view, std::string_view>> usual_pairs() {
   // Joints at the same place in both skeletons (Kinect v2; Perception Neuron). The last lines are
-  // segments of Xsens MVN, whose places are those of the joints at which they begin.
+  // segments of Xsens MVN; a segment has the place of the joint at which it begins.
   return {{"SpineBase", "Hips"},
           {"ShoulderLeft", "LeftArm"},
           {"ElbowLeft", "LeftForeArm"},
@@ -212,8 +216,8 @@ std::vector<std::pair<std::string_view, std::string_view>> usual_pairs() {
           {"KneeRight", "RightLowerLeg"}};
 }
 
-/// Spaces are planned in the order of their streams' names. Streams with method "none" keep their
-/// own space.
+/// Plans the spaces in the order of the stream names. Streams with the method "none" keep their own
+/// space.
 Result<std::vector<SpacePlan>> plan_spaces(const TakeHeader& header, const Manifest& manifest,
                                            std::size_t reference_group) {
   std::vector<SpacePlan> plans;
@@ -242,8 +246,8 @@ void add_pairs(const SpacePlan& plan, const TakeSlab& slab, PairMoments& moments
   }
 }
 
-/// The distances before and after must be sums over the same cells. Both use the validity after the
-/// move, which is the stricter one.
+/// The sums before and after the move must include the same points. Both use the validity after the
+/// move, because the move may make points invalid.
 void ResidualSums::transform(const SpacePlan& plan, TakeSlab& slab) {
   auto& points = std::get<PointRows>(slab.rows[plan.group]);
   const std::vector<double> before = points.positions;
@@ -273,7 +277,7 @@ SpaceReport ResidualSums::report(const SpacePlan& plan, const TakeHeader& header
   out.magnification = plan.options.magnification;
   const auto& ours = *joint_names(header.groups[plan.group]);
   const auto& theirs = *joint_names(header.groups[plan.onto]);
-  // A pair that is never tracked has no distance; 0 with 0 rows says so.
+  // A pair that is never tracked has no distance. It gets 0 for 0 rows.
   const auto rms = [](double square, std::uint64_t n) {
     return n == 0 ? 0.0 : std::sqrt(square / static_cast<double>(n));
   };

@@ -14,8 +14,8 @@ namespace kinalign {
 
 namespace {
 
-/// Names of the options that differ between two structures of the same type. Both lists come from
-/// describe(), so they have the same options in the same order.
+/// Returns the names of the options that differ between two structures of the same type. describe()
+/// lists the options of both in the same order.
 std::vector<std::string> differing(const Fields& some, const Fields& others) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < some.size(); ++i) {
@@ -27,7 +27,7 @@ std::vector<std::string> differing(const Fields& some, const Fields& others) {
   return names;
 }
 
-/// Adds the options that a file sets explicitly, even to their defaults.
+/// Adds the options that a file sets, including those set to their defaults.
 void add_stated(const KeyLines& lines, std::vector<std::string>& names) {
   for (const auto& [key, line] : lines) names.push_back(key);
 }
@@ -39,7 +39,7 @@ std::vector<std::string> options_set(StreamOptions options) {
   return names;
 }
 
-/// The method itself decides which other options are used, so it never counts as unused.
+/// The method decides which other options are used, so the method itself never counts as unused.
 std::vector<std::string> options_set(SpaceOptions options) {
   SpaceOptions defaults;
   defaults.method = options.method;
@@ -49,7 +49,7 @@ std::vector<std::string> options_set(SpaceOptions options) {
   return names;
 }
 
-/// The options that a method of [space] uses.
+/// A method of [space] and the options that it uses.
 struct Method {
   std::string_view name;
   std::vector<std::string_view> takes;
@@ -69,7 +69,7 @@ bool contains(std::span<const std::string_view> names, std::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Fails if an option of [space.STREAM] is set that its method does not use.
+/// Fails if [space.STREAM] sets an option that its method does not use.
 Result<void> check_space(const std::string& stream, const SpaceOptions& space) {
   const std::string at = "[space." + stream + "]";
   const Method& method = method_named(space.method);
@@ -90,7 +90,7 @@ Result<void> check_space(const std::string& stream, const SpaceOptions& space) {
 }
 
 /// Refuses an interval for stamps that need none: those of a shared clock and those of the
-/// reference. Refuses clock = "unknown" together with an interval, or for the reference.
+/// reference. Also refuses clock = "unknown" for the reference or together with an interval.
 Result<void> check_intervals(const Recording& recording, const Manifest& manifest) {
   const std::string reference = reference_name(recording, manifest);
   for (const StreamOptions& options : manifest.streams) {
@@ -117,8 +117,8 @@ Result<void> check_intervals(const Recording& recording, const Manifest& manifes
 
 }  // namespace
 
-/// The lists follow from what each kind of stream is. Nodes have no unit of length, points have no
-/// clicks. Only a recorded skeleton needs a hierarchy from elsewhere.
+/// The lists follow from the kinds of streams. Nodes have no unit of length, points have no clicks.
+/// Only a recorded skeleton needs a hierarchy from another file.
 std::span<const std::string_view> useless_options(const RecordedStream& stream) {
   static constexpr std::array<std::string_view, 4> clip{"rate_hz", "root_node", "mounting",
                                                         "skeleton"};
@@ -126,7 +126,7 @@ std::span<const std::string_view> useless_options(const RecordedStream& stream) 
                                                           "mounting", "skeleton"};
   static constexpr std::array<std::string_view, 4> nodes{"end_ns", "click_latency_ms",
                                                          "metres_per_unit", "skeleton"};
-  // A recording knows a device's clock better than any option.
+  // A recording contains the device's clock, which is more accurate than an option.
   static constexpr std::array<std::string_view, 8> recorded_clip{
       "start_ns",  "end_ns",      "click_latency_ms", "clock",
       "drift_ppm", "interval_ms", "root_node",        "mounting"};

@@ -9,20 +9,20 @@ namespace kinalign {
 
 namespace {
 
-/// A figure above `usable` makes a stream at most usable; a figure above `bad` makes it bad.
+/// If a figure is above `usable`, the stream is at most usable. Above `bad` it is bad.
 struct Limits {
   double usable = 0.0, bad = 0.0;
 };
-// The limits of docs/report.md, as shares of samples.
+// The limits of docs/report.md. Shares are shares of all samples.
 constexpr Limits invalid_share{0.05, 0.5};
 constexpr Limits inferred_share{0.10, 0.5};
 constexpr Limits bridged_share{0.10, 0.5};
-// Mean length of gaps, because the report has only their sum.
+// The mean length of gaps is compared, because the report has only the sum.
 constexpr Limits longest_gap_s{1.0, 10.0};
 constexpr Limits interval_s{0.010, 0.1};
 constexpr Limits residual_m{0.10, 0.30};
-// A finding has no figure. Its weight places a warning at the limit of usable and an error far
-// above.
+// A finding has no figure. The weight of a warning equals the limit of usable; the weight of an
+// error is far above.
 constexpr double finding_weight = 1.0, error_weight = 10.0;
 
 Quality quality_of(double figure, const Limits& limits) {
@@ -30,7 +30,8 @@ Quality quality_of(double figure, const Limits& limits) {
   return figure > limits.usable ? Quality::usable : Quality::good;
 }
 
-/// The weight is the figure in units of its limit, so concerns of different kinds can be compared.
+/// The weight is the figure divided by its limit, so that different kinds of concerns can be
+/// compared.
 Concern concern(const StreamReport& s, std::string what, double figure, const Limits& limits) {
   std::string part = fmt::format("{}", fmt::join(s.nodes, ", "));
   return {s.stream, std::move(part), std::move(what), figure / limits.usable,
@@ -41,12 +42,12 @@ double share(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// A share as text: "2.2 %"; "less than 0.1 %" for a share that would print as 0.0.
+/// Returns a share as text: "2.2 %", or "less than 0.1 %" if it would be printed as 0.0.
 std::string percent(double part) {
   return part < 0.0005 ? "less than 0.1 %" : fmt::format("{:.1f} %", 100.0 * part);
 }
 
-/// A share of 0 is no concern, not even a small one.
+/// Adds a concern about a share of samples. A share of 0 is no concern.
 void add_share(const StreamReport& s, std::uint64_t part, std::string_view what,
                const Limits& limits, std::vector<Concern>& out) {
   const double figure = share(part, s.samples);
@@ -64,7 +65,7 @@ void add_gaps(const StreamReport& s, std::vector<Concern>& out) {
 
 /// Adds a concern about the accuracy of the stream's stamps.
 void add_time(const StreamReport& s, std::vector<Concern>& out) {
-  // Unknown accuracy is just above the limit: it makes a stream usable, never bad.
+  // Unknown accuracy is just above the limit, so it makes a stream usable, never bad.
   if (!s.worst_interval_ns) {
     out.push_back(concern(s, "stamps of unknown accuracy", 1.01, {1.0, 2.0}));
     return;
@@ -86,12 +87,12 @@ void add_stream(const StreamReport& s, bool reference, std::vector<Concern>& out
   add_share(s, s.inferred, "inferred", inferred_share, out);
   add_share(s, s.bridged, "interpolated over loss", bridged_share, out);
   add_gaps(s, out);
-  // The reference defines the take's time, so its stamps have no error against it.
+  // The take's time is the reference's time, so the reference has no time error.
   if (!reference) add_time(s, out);
 }
 
-/// The residual of a moved stream. Joints are sorted worst first, so the first one explains the
-/// most.
+/// Adds a concern about the residual of a moved stream. The joints are sorted by residual, so the
+/// first joint is the worst.
 void add_space(const SpaceReport& space, std::vector<Concern>& out) {
   Concern whole{space.stream, "", "", space.after_m / residual_m.usable,
                 quality_of(space.after_m, residual_m)};
@@ -104,8 +105,8 @@ void add_space(const SpaceReport& space, std::vector<Concern>& out) {
   out.push_back(std::move(whole));
 }
 
-/// True if a finding concerns the stream: it names the stream, or it names one of its files and no
-/// other stream.
+/// Returns whether a finding concerns the stream: it names the stream, or it names one of its files
+/// and no other stream.
 bool is_about(const Finding& finding, const AlignmentReport& report, const std::string& stream,
               const std::vector<InputFacts>& files) {
   const auto names = [&finding](const std::string& name) {
@@ -115,7 +116,7 @@ bool is_about(const Finding& finding, const AlignmentReport& report, const std::
   };
   if (names(stream) || finding.what.file == stream) return true;
   const bool of_another = std::any_of(
-      // Findings of streams with one file name the stream in quotes (with_stream_name in
+      // If several streams share a file, findings name the stream in quotes (with_stream_name in
       // judge.cpp).
       report.streams.begin(), report.streams.end(),
       [&](const StreamReport& other) { return other.stream != stream && names(other.stream); });
@@ -124,7 +125,7 @@ bool is_about(const Finding& finding, const AlignmentReport& report, const std::
                      [&finding](const InputFacts& file) { return file.name == finding.what.file; });
 }
 
-/// Adds an error or a warning as a concern; notes are left out.
+/// Adds an error or a warning as a concern. Notes are ignored.
 void add_finding(const Finding& finding, const std::string& stream, std::vector<Concern>& out) {
   const bool error = finding.severity == Severity::error;
   if (finding.severity == Severity::note) return;
@@ -138,14 +139,13 @@ void add_finding(const Finding& finding, const std::string& stream, std::vector<
                  error ? Quality::bad : Quality::usable});
 }
 
-/// Quality first, then weight.
+/// Compares by quality first, then by weight.
 bool heavier(const Concern& a, const Concern& b) {
   if (a.quality != b.quality) return a.quality > b.quality;
   return a.weight > b.weight;
 }
 
-/// Sorts the concerns; the worst one decides. The sort is stable, so the reason is the same for
-/// equal weights.
+/// Sorts the concerns; the worst one gives the verdict. Concerns of equal weight keep their order.
 void settle(Verdict& verdict) {
   std::stable_sort(verdict.concerns.begin(), verdict.concerns.end(), heavier);
   verdict.quality = verdict.concerns.front().quality;
@@ -207,7 +207,7 @@ std::vector<Concern> worst_of(const std::vector<Verdict>& verdicts, std::size_t 
   std::stable_sort(all.begin(), all.end(), heavier);
   std::vector<Concern> out;
   for (Concern& c : all) {
-    // Several nodes with the same fault, for example of one radio, count as one concern.
+    // Several nodes with the same fault, for example because of one radio, count as one concern.
     const bool known = std::any_of(out.begin(), out.end(), [&c](const Concern& other) {
       const auto kind = [](const std::string& what) { return what.substr(what.find(' ') + 1); };
       return other.stream == c.stream && kind(other.what) == kind(c.what);

@@ -15,29 +15,29 @@ namespace kinalign {
 
 namespace {
 
-/// True for the recorder's own ports; no device can have such a name.
+/// Returns whether the port is one of the recorder's own ports. No device can have their names.
 bool is_of_marks(const CountedPort& port) {
   return port.stream == "marks" || port.stream == "trigger";
 }
 
-/// Collects the findings about one recording. Each function judges one kind of fault.
+/// Makes the findings about one recording. Each function judges one kind of fault.
 class RecordingJudge {
  public:
   RecordingJudge(const std::string& path, const RecordingSurvey& survey)
       : survey_(survey), out_{path, survey.findings} {}
 
   Findings judge() {
-    // The findings of reading come first: they may explain all others.
+    // Findings of the reader are reported first, because they may explain the other findings.
     judge_truncated();
     append(out_.all, judge_end(out_.file, survey_.facts.has_value(), survey_.ending));
     judge_wall_clock();
-    // Only a recording of kinalign has the numbers that this check needs.
+    // Only a recording of kinalign has the message numbers that this check needs.
     if (survey_.facts) judge_messages();
     if (survey_.more_marks > 0) {
       out_.add(Severity::note, fmt::format("at most {} marks", grouped(most_marks)),
                grouped(survey_.more_marks) + " more", "alignment leaves them out");
     }
-    // The count is in the end record. It is an error: these data existed and are lost.
+    // The end record states this count. It is an error, because these data existed and are lost.
     if (survey_.end && survey_.end->dropped > 0) {
       out_.add(Severity::error, "every message that reached the recorder",
                grouped(survey_.end->dropped) + " fewer",
@@ -56,7 +56,7 @@ class RecordingJudge {
  private:
   void judge_truncated() {
     for (const std::string& file : survey_.truncated) {
-      // The advice must work as written, so it must not overwrite the damaged file.
+      // The suggested command must work as printed, so it must not overwrite the damaged file.
       const char* whole = file == "whole.mcap" ? "recovered.mcap" : "whole.mcap";
       out_.all.push_back(
           {Severity::warning,
@@ -68,7 +68,7 @@ class RecordingJudge {
     }
   }
 
-  /// Several steps of the wall clock are one finding. The largest one shows how bad it was.
+  /// All steps of the wall clock are reported as one finding, with the largest step.
   void judge_wall_clock() {
     if (survey_.steps.empty()) return;
     const WallClockStep& worst = *std::max_element(
@@ -82,9 +82,9 @@ class RecordingJudge {
         "set the machine's clock before recording: docs/time_server.md");
   }
 
-  /// Errors for messages that reached the recorder and are not in the file. A gap in the recorder's
-  /// own numbering shows them; at the ends of a topic the counts do. The recorder counts messages
-  /// before they are written, so its counts also cover what the disk lost.
+  /// Reports messages as errors if they reached the recorder and are missing in the file. Gaps in
+  /// the recorder's own numbers show most of them. The recorder's counts also show messages missing
+  /// at the beginning and end of a topic. The recorder counts messages before it writes them.
   void judge_messages() {
     const auto add = [this](const std::string& expected, std::uint64_t missing) {
       if (missing == 0) return;
@@ -95,10 +95,10 @@ class RecordingJudge {
     for (const ChannelSurvey& channel : survey_.channels) {
       add(channel.channel.topic + " with consecutive message numbers", channel.missing);
     }
-    // The counts of later parts begin with the recording, not with the file.
+    // In later parts the counts begin with the recording, not with the file.
     if (survey_.facts->part != 1) return;
     for (const CountedSender& one : survey_.senders) {
-      // Messages that are missing in between have their own finding.
+      // Missing messages inside the topic have their own finding.
       std::uint64_t known = 0;
       for (const ChannelSurvey& channel : survey_.channels) {
         if (channel.channel.topic == one.topic) known += channel.messages + channel.missing;
@@ -109,14 +109,14 @@ class RecordingJudge {
     }
   }
 
-  /// A warning if a required device has no message in the recording. `prefix`: that of its topics,
-  /// "mocap" or, for a node, "imu/7".
+  /// Warns if a required device has no message in the recording. `prefix` is the begin of its
+  /// topics: "mocap" or, for a node, "imu/7".
   void judge_required(const std::string& prefix) {
     for (const ChannelSurvey& one : survey_.channels) {
-      // A definition without messages does not count.
+      // A channel without messages does not count.
       if (one.channel.topic.starts_with("/" + prefix + "/") && one.messages > 0) return;
     }
-    // The part before '/' is the device; ports belong to devices.
+    // The part before '/' is the device, because a port belongs to a device.
     const std::size_t slash = std::min(prefix.find('/'), prefix.size());
     const std::string device = prefix.substr(0, slash);
     const std::string node = prefix.substr(std::min(slash + 1, prefix.size()));
@@ -130,8 +130,9 @@ class RecordingJudge {
                    "docs/recording.md");
   }
 
-  /// The text about datagrams at the port of a device of which nothing was recorded. Empty if none
-  /// came. It tells a device at the wrong port from one that is switched off.
+  /// Returns text about datagrams at the port of a device without recorded data, or "" if there
+  /// were none. Such datagrams mean that a device uses the wrong port; without them, it is probably
+  /// switched off.
   std::string unusable_at(const std::string& device) const {
     const auto is_of_device = [&device](const auto& one) { return one.stream == device; };
     const auto port = std::find_if(survey_.ports.begin(), survey_.ports.end(), is_of_device);
@@ -139,13 +140,13 @@ class RecordingJudge {
     return sent || port == survey_.ports.end() ? "" : unusable_data(port->counts, "to its port");
   }
 
-  /// Notes by a device's own numbers: frames that never reached the recorder, and restarts. These
-  /// losses happened before the recorder, on the network or in the device. They are notes, since
-  /// nothing can be repaired.
+  /// Notes about frames that did not reach the recorder and about restarts, from the device's own
+  /// numbers. The frames were lost on the network or in the device. The finding is only a note,
+  /// since nothing can be repaired.
   void judge_numbers(const CountedSender& one) {
     const SequenceCounts& order = one.counts.order;
     if (order.lost > 0) {
-      // The share is over all numbers that the sender gave.
+      // The share of lost frames refers to all frame numbers that the sender used.
       const std::uint64_t all = order.lost + frames_or_messages(one.counts);
       out_.add(Severity::note, "every frame that " + name_of(one, survey_) + " sent",
                fmt::format("{} lost of {}", grouped(order.lost), grouped(all)),
@@ -158,15 +159,15 @@ class RecordingJudge {
     }
   }
 
-  /// Findings about data that came to a port and is not in the recording.
+  /// Findings about data that arrived at a port and is not in the recording.
   void judge_port(const CountedPort& port) {
     PortCounts counts = port.counts;
     if (counts.sifted) {
       judge_nodes_port(port);
       return;
     }
-    // Any program of the network may send such datagrams without harm, but one may have been meant
-    // as a mark.
+    // Other programs may send such datagrams without harm, but one of them may have been meant as a
+    // mark.
     if (is_of_marks(port) && counts.refused > 0) {
       out_.add(Severity::note, "only marks at the port of " + port.stream,
                grouped(counts.refused) + " datagrams that are not marks",
@@ -181,10 +182,10 @@ class RecordingJudge {
              "check what else the machine does while it records");
   }
 
-  /// A filter of the kernel drops and counts datagrams that are no frames of nodes, for example of
-  /// another device. Many of them are a warning; `record` uses the same limit.
+  /// A filter of the kernel drops and counts datagrams that are not frames of nodes, for example
+  /// those of another device. Many such datagrams are a warning; `record` uses the same limit.
   void judge_nodes_port(const CountedPort& port) {
-    // For example frames of a node without the lab's key.
+    // Examples are frames of a node without the lab's key.
     if (port.counts.refused > 0) {
       out_.add(Severity::note, "only frames of the lab's nodes at the port of " + port.stream,
                grouped(port.counts.refused) + " refused datagrams",
@@ -202,10 +203,10 @@ class RecordingJudge {
              "check the port and the protocol that each device sends to");
   }
 
-  /// Findings about streams that can't become rows: the messages are not of the stated protocol,
-  /// most frames are refused, or no skeleton is known.
+  /// Findings about streams that can't be aligned. Their messages have another protocol than
+  /// stated, most frames are refused, or there is no skeleton.
   void judge_rows() {
-    // A set names each stream once, although it may have had several senders.
+    // A set, because a stream with several senders must be named once.
     std::set<std::string> without_skeleton;
     for (const CountedSender& one : survey_.senders) {
       const auto channel = std::find_if(
@@ -222,11 +223,11 @@ class RecordingJudge {
                  "check the port and the protocol that the device sends to");
       }
       const auto known = find_recorded_protocol(protocol);
-      // Only protocols that are decoded count frames.
+      // Frames are counted only for protocols that are decoded.
       if (!known || counts.frames == 0) continue;
       const ProtocolRow& row = row_of(*known);
-      // Pieces of a suit's frames over UDP do not state the frame they belong to. If some are lost
-      // or mixed, the frame can't be put together.
+      // A suit's frame is sent in several datagrams, which do not state their frame. If some are
+      // lost or out of order, the frame can't be assembled.
       if (row.losses == LossNumbers::frame_heads && are_many(counts.refused) &&
           counts.refused > counts.frames) {
         out_.add(
@@ -236,7 +237,7 @@ class RecordingJudge {
             "bytes",
             "use TCP, which neither loses nor mixes pieces of frames");
       }
-      // The recorder attaches the BVH of a suit under the name of its device.
+      // The recorder attaches the suit's BVH file under the name of the device.
       const auto& names = survey_.attachments;
       const bool has_body =
           std::find(names.begin(), names.end(), one.stream + ".bvh") != names.end();

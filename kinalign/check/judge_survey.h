@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Judges files by their surveys. Pure functions: no file is read again.
+// Judges files by their surveys. These functions do not read the files again.
 #pragma once
 
 #include "kinalign/formats/clip_survey.h"
@@ -11,16 +11,16 @@
 
 namespace kinalign {
 
-/// The problems of a recording: damage, a missing end, messages missing in its own numbering,
-/// devices that sent nothing, data that was not recorded or can't be aligned.
+/// Findings about a recording: damage, a missing end, gaps in the message numbers, devices that
+/// sent nothing, and data that was not recorded or can't be aligned.
 Findings judge_survey(const std::string& path, const RecordingSurvey& survey);
 
-/// The problems of an XDF file: damage, stamps that are no numbers or step back, clocks that were
-/// reset, missing streams, samples or clock offsets.
+/// Findings about an XDF file: damage, stamps that are not numbers or go back, clocks that were
+/// reset, and missing streams, samples or clock offsets.
 Findings judge_survey(const std::string& path, const XdfSurvey& survey);
 
-/// A warning if a skeleton's length differs from the time between the clicks on record and stop
-/// (start_ns and end_ns) by more than two steps.
+/// Warns if the length of a skeleton stream differs from the time between the clicks on record and
+/// stop (start_ns and end_ns) by more than two steps.
 Findings judge_survey(const ClipSurvey& survey, const StreamOptions& options);
 
 }  // namespace kinalign

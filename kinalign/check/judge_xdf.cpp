@@ -8,16 +8,16 @@ namespace kinalign {
 
 namespace {
 
-/// Severity: a warning if stamps can't be used as they are, a note if only the user should know.
+/// Makes findings about one stream. Unusable stamps are a warning; all other facts are notes.
 void judge_stream(const XdfStreamSurvey& one, FileFindings& out) {
   const std::string stream = fmt::format(" of stream '{}'", shown(one.stream.name));
-  // A stream without samples has no further faults.
+  // A stream without samples has no further findings.
   if (one.samples == 0) {
     out.add(Severity::note, "samples" + stream, "none",
             "this stream was recorded, but its sender sent no samples");
     return;
   }
-  // A stamp that is no number, or too large to be a time, gives no time.
+  // A stamp that is not a number, or is too large, gives no time.
   if (one.timeless > 0) {
     out.add(Severity::warning, "stamps below 1e15" + stream,
             grouped(one.timeless) + " other stamps", "these samples have no time");
@@ -28,14 +28,14 @@ void judge_stream(const XdfStreamSurvey& one, FileFindings& out) {
                         one.largest_step_back_s),
             "the sender's clock was set back, or samples arrived out of order");
   }
-  // NaN is the usual mark of a missing value, so it is no fault.
+  // NaN usually marks a missing value, so it is only a note.
   if (one.no_numbers > 0) {
     out.add(Severity::note, "finite values" + stream,
             grouped(one.no_numbers) + " NaN or infinite values",
             "many senders mark missing measurements this way");
   }
-  // Without offsets nothing relates both clocks. Taking them as one is right if both ran on one
-  // machine.
+  // Without clock offsets, the stamps are taken as stamps of the recorder's clock. This is right if
+  // sender and recorder ran on one machine.
   if (one.clock.empty()) {
     out.add(Severity::note, "clock offsets" + stream, "none",
             "its stamps are treated as stamps of the recorder's clock");
@@ -50,7 +50,7 @@ void judge_stream(const XdfStreamSurvey& one, FileFindings& out) {
 }  // namespace
 
 Findings judge_survey(const std::string& path, const XdfSurvey& survey) {
-  // The findings of the reader come first.
+  // The findings of the reader are reported first.
   FileFindings out{path, survey.findings};
   for (const XdfStreamSurvey& one : survey.streams) judge_stream(one, out);
   if (survey.streams.empty()) {

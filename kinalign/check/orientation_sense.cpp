@@ -13,19 +13,19 @@ namespace kinalign {
 
 namespace {
 
-/// Fewer samples are not judged.
+/// Nodes with fewer samples are not judged.
 constexpr std::uint64_t enough_samples = 50;
-/// Chosen limit: a runner's mean leans by a few degrees, a wrong axis by 90.
+/// Chosen limit: for a runner the mean acceleration leans by a few degrees, for a wrong axis by 90.
 constexpr double most_lean_deg = 45.0;
-/// Slower turns are lost in the gyroscope's bias (0.05 rad/s and less) and in rounded angles.
+/// Slower rotations are hidden by the gyroscope's bias (up to 0.05 rad/s) and by rounded angles.
 constexpr double least_turn_rad_s = 0.2;
-/// Chosen limit: all nodes of UNSW's walk, of the Xsens exports and of the demo lie above; the
-/// demo's wrist with x,y,z,w read as w,x,y,z has -0.16.
+/// Chosen limit for the correlation. All nodes of a walk in UNSW's data, of the Xsens exports and
+/// of the demo are above it. The demo's wrist has -0.16 if x,y,z,w is read as w,x,y,z.
 constexpr double least_likeness = 0.5;
 
 }  // namespace
 
-/// Sums up gravity in the world, and turns by the orientations and by the gyroscope.
+/// Sums gravity in the world's axes, and the rotations by orientations and by gyroscope.
 void OrientationSense::add(const ImuSamples& block) {
   if (block.size() == 0 || block.orientation.empty()) return;
   const std::size_t count = block.valid.size() / block.size();
@@ -33,14 +33,14 @@ void OrientationSense::add(const ImuSamples& block) {
   for (std::size_t cell = 0; cell < block.valid.size(); ++cell) {
     Node& node = nodes_[cell % count];
     if (block.valid[cell] == 0) {
-      // After a missing sample the turn since the last one is not known.
+      // After a missing sample, the rotation since the last sample is not known.
       node.last.reset();
       continue;
     }
     Last now{to_ns(block.stamps[cell / count]), quat(block.orientation, cell), Vec3::Zero()};
     ++node.samples;
-    // At rest an accelerometer measures the support against gravity, which points up. The mean over
-    // a motion does, too.
+    // An accelerometer at rest measures an acceleration that points up. The mean over a motion
+    // points up too.
     if (!block.acceleration.empty()) node.up += now.q * Vec3(vec3(block.acceleration, cell));
     if (!block.angular_velocity.empty()) {
       now.rate = vec3(block.angular_velocity, cell);
@@ -50,15 +50,15 @@ void OrientationSense::add(const ImuSamples& block) {
   }
 }
 
-/// Adds the turn between two samples. Long steps and wide turns are left out, since they say little
-/// about the rate between. Turns are compared, not rates: a stamp 10 us before the next one would
-/// outweigh all others.
+/// Adds the rotation between two samples. Long steps and large rotations are omitted, because the
+/// rate may have changed between the samples. Rotations are compared instead of rates, because a
+/// step of only 10 us would give a huge rate.
 void OrientationSense::add_turn(Node& node, const Last& now) {
   constexpr double longest_s = 0.2, farthest_rad = 1.0, quickest_rad_s = 40.0;  // 2,300 deg/s
   const double seconds = 1e-9 * (static_cast<double>(now.t) - static_cast<double>(node.last->t));
   const Vec3 turn = rotation_vector(node.last->q.conjugate() * now.q);
   if (!(seconds > 0.0) || seconds > longest_s || turn.norm() > farthest_rad) return;
-  // The gyroscope's turn between two samples, by the mean of both rates.
+  // The gyroscope's rotation between two samples, computed from the mean of both rates.
   const Vec3 rate = 0.5 * (node.last->rate + now.rate), measured = rate * seconds;
   if (rate.norm() > quickest_rad_s) return;
   ++node.turns;
@@ -74,7 +74,7 @@ void OrientationSense::judge(const ImuHeader& header, FileFindings& out) const {
     const Node& node = nodes_[s];
     const std::string name = s < header.node_names.size() ? shown(header.node_names[s]) : "";
     if (header.content.acceleration && header.content.gravity && node.samples >= enough_samples) {
-      // The angle between the mean acceleration in the world and +y.
+      // The angle between the mean acceleration in the world and the vertical axis +y.
       const double lean = std::atan2(std::hypot(node.up.x(), node.up.z()), node.up.y());
       const double lean_deg = lean * (180.0 / std::numbers::pi);
       if (lean_deg > most_lean_deg) {
@@ -84,9 +84,10 @@ void OrientationSense::judge(const ImuHeader& header, FileFindings& out) const {
       }
     }
     const double least = node.times * least_turn_rad_s * least_turn_rad_s;
-    // Enough samples, and turns that are clearly above the bias: otherwise the likeness is noise.
+    // The correlation is meaningful only with enough samples and with rotations clearly above the
+    // bias.
     if (node.turns < enough_samples || node.measured < least) continue;
-    // The correlation of both turns: 1 for equal directions, whatever the scale.
+    // The correlation of both rotations. It is 1 for equal directions and does not depend on scale.
     const double alike = node.both / std::sqrt(std::max(node.turned * node.measured, 1e-300));
     if (alike >= least_likeness) continue;
     out.add(Severity::warning, "orientations of '" + name + "' that turn as the gyroscope measures",

@@ -9,9 +9,9 @@ namespace kinalign {
 
 namespace {
 
-/// The words for datagrams that the kernel, or its filter at a nodes' port, dropped.
-/// The kernel's filter drops foreign datagrams at a nodes' port, and a full socket drops frames.
-/// The numbers of the lost frames tell how many are surely foreign.
+/// Returns text about datagrams that the kernel dropped. At a nodes' port, the kernel's filter
+/// drops foreign datagrams, and a full buffer drops frames. The number of lost frames tells how
+/// many datagrams are certainly foreign.
 std::string dropped_text(const PortCounts& counts, std::uint64_t frames_lost) {
   if (!counts.sifted) return "dropped by the kernel";
   const std::uint64_t least = foreign_datagrams(counts, frames_lost);
@@ -30,7 +30,7 @@ std::string sender_name(const std::string& stream, const std::string& node,
 
 std::string sender_name(const std::string& stream, const std::string& node,
                         const RecordingSurvey& survey) {
-  // Places are found by "stream/node", as the recording states them.
+  // The recording states the places under "stream/node".
   const auto place = survey.places.find(stream + "/" + node);
   return sender_name(stream, node, place == survey.places.end() ? "" : place->second);
 }
@@ -49,7 +49,7 @@ std::string loss_of(const PortCounts& counts, std::uint64_t frames_lost) {
 
 std::string unusable_data(const PortCounts& counts, const std::string& to) {
   const std::uint64_t came = counts.dropped + counts.refused;
-  // Only a nodes' port is sifted, so only there can datagrams be foreign.
+  // Only a nodes' port has a filter, so only this port counts foreign datagrams.
   if (!counts.sifted || came == 0) return "";
   return fmt::format(
       "{} datagrams came {}, {}", grouped(came), to,

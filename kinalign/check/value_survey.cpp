@@ -12,17 +12,18 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::uint64_t enough = 10;  // points of a person, or frames or samples of a mean
+// least number of points of a person, and of frames or samples for a mean
+constexpr std::uint64_t enough = 10;
 
-/// Wide limits: a metre taken for a centimetre, or the other way round, lies outside; children and
-/// two people in one volume lie inside.
+/// Wide limits. If metres are taken for centimetres or the reverse, the size is outside. Children
+/// and two people in one volume are inside.
 constexpr double smallest_m = 0.2, largest_m = 20.0;
-/// The step from frame to frame of a root that walks, at 30 Hz. The joints of a hand are at least 6
-/// cm from its wrist.
+/// Greatest step of a walking root joint from frame to frame, at 30 Hz. The joints of a hand are at
+/// least 6 cm from its wrist.
 constexpr double longest_step_m = 0.05;
-/// A node at rest measures 9.8 m/s2, a runner's shank 20 in the mean.
+/// A node at rest measures 9.8 m/s2. On a runner's shank the mean is 20 m/s2.
 constexpr double least_with_gravity = 6.0, most_acceleration = 40.0;
-/// Limbs turn by 1 to 5 rad/s in the mean; degrees read as radians are 57 times larger.
+/// Limbs rotate by 1 to 5 rad/s on average. Degrees that are read as radians are 57 times larger.
 constexpr double most_angular_velocity = 12.0;
 
 }  // namespace
@@ -37,8 +38,9 @@ double MeanSize::deviation() const {
   return std::sqrt(std::max(0.0, squares / static_cast<double>(count) - mean() * mean()));
 }
 
-/// Counts zeros of a joint that was far from zero before or after: such zeros mark a lost joint. A
-/// joint that moves to zero in small steps is really there.
+/// Counts the frames in which a joint is at zero, if it was far from zero before or after. Such
+/// zeros mark a joint that was not seen. If a joint moves to zero in small steps, the position is
+/// real.
 void PointSizes::Seen::add(const Vec3& at) {
   if (at.isZero(0.0)) {
     ++now_at_zero;
@@ -51,19 +53,19 @@ void PointSizes::Seen::add(const Vec3& at) {
   far = comes_far;
 }
 
-/// Counts states and measures the box around the points of each frame.
+/// Counts the states of points and measures the box around the points of each frame.
 void PointSizes::add(const PointFrames& block) {
   if (block.size() == 0) return;
   const std::size_t joints = block.state.size() / block.size();
   all_frames_ += block.size();
   joints_.resize(joints);
   for (std::size_t t = 0; t < block.size(); ++t) {
-    // An axis-aligned box is enough: its diagonal is between the body's size and 1.7 times that.
+    // An axis-aligned box suffices. Its diagonal is 1 to 1.7 times the size of the body.
     Eigen::AlignedBox3d box;
     std::uint64_t seen = 0;
     for (std::size_t cell = t * joints; cell < (t + 1) * joints; ++cell) {
       if (block.state[cell] == Tracking::missing) continue;
-      // Inferred points count as seen: the device gave them a place.
+      // Inferred points count as seen, because the device gave them a position.
       ++(block.state[cell] == Tracking::tracked ? tracked_ : inferred_);
       const Vec3 at = vec3(block.positions, cell);
       joints_[cell - t * joints].add(at);
@@ -80,7 +82,7 @@ void PointSizes::add(const PointFrames& block) {
 
 Findings PointSizes::judge(const PointHeader& header, const std::string& file) const {
   FileFindings out{file};
-  // With so few points nothing else can be judged.
+  // With so few points no other property can be judged.
   if (all_frames_ >= enough && 10 * seen_frames_ < all_frames_) {
     out.add(Severity::warning, "at least one frame in ten with a point",
             fmt::format("{} of {}", seen_frames_, all_frames_), "the other frames have no points",
@@ -93,7 +95,8 @@ Findings PointSizes::judge(const PointHeader& header, const std::string& file) c
   return out.all;
 }
 
-/// Findings about points that were never tracked or never seen. Both are legal but rarely intended.
+/// Makes findings about points that were never tracked or never seen. Both are allowed, but rarely
+/// intended.
 void PointSizes::judge_seen(const PointHeader& header, FileFindings& out) const {
   if (inferred_ >= enough && tracked_ == 0) {
     out.add(Severity::warning, "points that were tracked",
@@ -116,12 +119,12 @@ void PointSizes::judge_seen(const PointHeader& header, FileFindings& out) const 
   }
 }
 
-/// Findings about points at exactly zero or far away, which writers use as marks for "not seen". A
-/// point that is always at zero, or moves away from it steadily, is the file's origin instead: a
-/// body seen from its own root, or from its root's first place. Only joints without an offset from
-/// each other can both be the origin.
+/// Makes findings about points at exactly zero or far away, which writers use as marks for "not
+/// seen". Some files use a body's root, or the first position of its root, as the origin. A point
+/// at the origin is always at zero or moves away steadily, and is no fault. If several joints are
+/// always at zero, they can't all be the origin.
 void PointSizes::judge_marks(const PointHeader& header, FileFindings& out) const {
-  // Joints that were seen, but at zero only. One of them may be the file's origin.
+  // Number of joints that were seen only at zero. One of them may be the file's origin.
   const auto stays = std::count_if(joints_.begin(), joints_.end(),
                                    [](const Seen& j) { return j.seen() && !j.elsewhere; });
   std::uint64_t at_zero = 0;
@@ -140,7 +143,7 @@ void PointSizes::judge_marks(const PointHeader& header, FileFindings& out) const
             "read as places, as they stand there",
             "if 0, 0, 0 means not seen, set missing_point = [0, 0, 0] in a layout");
   }
-  // If most frames are too wide, the unit is wrong instead, and judge_unit() says so.
+  // If most frames are too wide, the unit is wrong, which judge_unit() reports.
   if (far_.count > 0 && far_.count <= person_.count) {
     out.add(Severity::warning, "the points of a frame within 20 m",
             fmt::format("{} of {} frames with points farther apart, {:.0f} m on average",
@@ -150,15 +153,15 @@ void PointSizes::judge_marks(const PointHeader& header, FileFindings& out) const
   }
 }
 
-/// A finding if the points of a frame lie too far apart or too close together for a person.
+/// Makes a finding if the points of a frame are too far apart or too close together for a person.
 void PointSizes::judge_unit(FileFindings& out) const {
   if (far_.count + person_.count < enough) return;
-  // The mean diagonal of the larger group stands for the person's size.
+  // The mean diagonal of the larger group of frames is taken as the size of the person.
   const double size = (far_.count > person_.count ? far_ : person_).mean();
   if (size <= largest_m && (size >= smallest_m || most_points_ < enough)) return;
   std::string meaning = "they all lie in one place", repair;
   if (size > 0.0) {
-    // The factor, a power of ten, by which the size is too large for a person.
+    // The power of ten by which the size is too large for a person.
     const double times = std::pow(10.0, std::round(std::log10(size / 1.7)));
     meaning = times > 1.0 ? fmt::format("lengths are about {:g} times too large", times)
                           : fmt::format("lengths are about {:g} times too small", 1.0 / times);
@@ -177,7 +180,7 @@ void ImuSizes::add(std::span<const double> vectors, const ImuSamples& block, Mea
   }
 }
 
-/// The quantities are summed by length; the orientations are judged against both.
+/// Adds the lengths of the vectors. The orientations are compared with the vectors themselves.
 void ImuSizes::add(const ImuSamples& block) {
   samples_ += block.valid.size();
   valid_ += static_cast<std::uint64_t>(std::count(block.valid.begin(), block.valid.end(), 1));
@@ -189,7 +192,7 @@ void ImuSizes::add(const ImuSamples& block) {
 Findings ImuSizes::judge(const ImuHeader& header, const std::string& file) const {
   const bool gravity = header.content.gravity;
   FileFindings out{file};
-  // All findings of units have the same effect: values are used as they are in the file.
+  // All findings about units have the same effect: the values are used as they are in the file.
   const auto find = [&out](const char* expected, const std::string& found, const char* repair) {
     out.add(Severity::warning, expected, found, "the values are used unchanged", repair);
   };
@@ -202,8 +205,8 @@ Findings ImuSizes::judge(const ImuHeader& header, const std::string& file) const
   if (acceleration_.count >= enough) {
     const double mean = acceleration_.mean();
     const std::string found = fmt::format("{:.3g} m/s2", mean);
-    // Without gravity the acceleration of a limb is small or jerky in turn; with it the mean is
-    // about 9.8 and steady.
+    // Without gravity the acceleration of a limb is small, or large for short times. With gravity
+    // it is steady and about 9.8 m/s2 on average.
     const bool steady = mean > 8.5 && mean < 12.0 && acceleration_.deviation() < 0.5 * mean;
     if (mean > most_acceleration || (gravity && mean < least_with_gravity)) {
       find(gravity ? "accelerations with gravity of 6 to 40 m/s2 on average"
