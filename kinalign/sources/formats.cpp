@@ -30,41 +30,42 @@ namespace kinalign {
 
 namespace {
 
-/// Everything that a reader needs to know of its file. Each later pass makes a new reader from it,
-/// so it is copied into the functions below.
+/// The file and the options of a stream. The functions below copy it, because each later pass makes
+/// a new reader from it.
 struct Source {
   FileSystem* files;
   StreamOptions options;
   StreamFile file;
 };
 
-/// A format with a reader of its own in this program. `looks` sees the first bytes and the path. It
-/// must be sure: the first format that recognises a file gets it.
+/// A format that has its own reader in this program. `looks` gets the first bytes and the path. The
+/// first format that recognises a file is used, so `looks` must be certain.
 struct Format {
   std::string_view name;
   bool (*looks)(std::string_view head, std::string_view path);
   Result<AnyReader> (*make)(const Source& source);
-  std::string_view selects = {};  // the only key that `select` may have here
-  /// The further files that the reader opens; nullptr: none.
+  std::string_view selects = {};  // the only key of `select` that this format knows
+  /// Returns the further files that the reader opens; nullptr: there are none.
   Result<std::vector<std::string>> (*further_files)(const Source& source) = nullptr;
-  /// A first pass of its own; nullptr: the survey reads all rows.
+  /// The format's own first pass; nullptr: the first pass reads all rows.
   Result<ClipSurvey> (*survey)(const Source& source, const Progress& progress) = nullptr;
 };
 
-/// For a format that is recognised by its content, whatever the file's name is.
+/// Recognises a format by the first bytes alone; the file's name does not matter.
 template <bool (*looks)(std::string_view head)>
 bool by_content(std::string_view head, std::string_view) {
   return looks(head);
 }
 
-/// For a reader that needs the options and the file's name alone.
+/// Makes a reader that needs only the options and the file's name.
 template <auto make>
 Result<AnyReader> make_reader(const Source& source) {
   return AnyReader(make(source.options, source.file.path));
 }
 
-/// True for one of a pair of UI-PRMD files. Files of angles, of the Kinect or of the optical
-/// system, also look like tables of points, which would be wrong; the reader refuses them.
+/// Returns whether the file is one of a pair of UI-PRMD files. Files of angles also look like
+/// tables of points, which would be wrong. They are therefore recognised here, and the reader
+/// refuses them.
 bool is_ui_prmd(std::string_view head, std::string_view path) {
   if (named_as_ui_prmd_positions(path)) return looks_like_ui_prmd_kinect(head);
   return named_as_ui_prmd_angles(path) &&
@@ -76,8 +77,8 @@ Result<std::vector<std::string>> ui_prmd_files(const Source& source) {
   return std::vector{KA_TRY(ui_prmd_angles_of(*source.files, source.file.path))};
 }
 
-/// UI-PRMD keeps positions and angles of one repetition in two files; the reader needs both. The
-/// file of positions is read as the stream, that of angles through `file`.
+/// UI-PRMD stores the positions and the angles of one repetition in two files, and the reader needs
+/// both. The file of positions is read as the stream, the file of angles through `file`.
 Result<AnyReader> make_ui_prmd(const Source& source) {
   const std::string angles = KA_TRY(ui_prmd_angles_of(*source.files, source.file.path));
   auto file = std::make_shared<InputFile>(KA_TRY(InputFile::open(*source.files, angles)));
@@ -85,17 +86,17 @@ Result<AnyReader> make_ui_prmd(const Source& source) {
                                               [file] { return file->next(); }));
 }
 
-/// True for a tracking system of BIDS-Motion, by its name; its sidecar files state the meaning of
-/// its columns.
+/// Returns whether the file is a tracking system of BIDS-Motion, by its name. Its sidecar files
+/// state the meaning of its columns.
 bool is_bids(std::string_view, std::string_view path) { return named_as_bids_motion(path); }
 
 Result<std::vector<std::string>> bids_files(const Source& source) {
-  // A system that can't be read is an error here, before its sidecar files are listed as inputs.
+  // If the system can't be read, the error is returned before sidecar files are listed.
   KA_TRY(read_bids_system(*source.files, source.file.path));
   return bids_sidecar_paths(*source.files, source.file.path);
 }
 
-/// Reads points if the file has positions, else nodes. `select kind` decides if it is given.
+/// Reads points if the file has positions, otherwise nodes. `select kind` overrides this choice.
 Result<AnyReader> make_bids(const Source& source) {
   const BidsSystem system = KA_TRY(read_bids_system(*source.files, source.file.path));
   const auto kind = source.options.select.find("kind");
@@ -110,7 +111,7 @@ Result<AnyReader> make_bids(const Source& source) {
   return AnyReader(KA_TRY(make_bids_node_reader(system, source.options, source.file.path)));
 }
 
-/// Reads the body's segments, or the sensors if `select part` says so.
+/// Reads the segments of the body, or the sensors if `select part` is "sensors".
 Result<AnyReader> make_mvnx(const Source& source) {
   const auto part = source.options.select.find("part");
   if (part == source.options.select.end() || part->second == "segments") {
@@ -123,8 +124,8 @@ Result<AnyReader> make_mvnx(const Source& source) {
       Error{source.file.path, 0, "select part = segments or sensors", shown(part->second)});
 }
 
-// The order decides: formats that are known by content come before those that are known by name,
-// and all of them before the layouts.
+// The order matters: first formats that are recognised by content, then formats that are recognised
+// by name. Layouts are checked after all formats.
 constexpr std::array<Format, 9> formats{{
     {"bvh", by_content<looks_like_bvh>,
      [](const Source& s) -> Result<AnyReader> {
@@ -147,7 +148,7 @@ constexpr std::array<Format, 9> formats{{
     {"bids", is_bids, make_bids, "kind", bids_files},
 }};
 
-/// The kind of a layout says whether its rows are points or nodes.
+/// The kind of the layout decides whether rows become points or nodes.
 Result<AnyReader> make_table_reader(const TableLayout& layout, const Source& source) {
   if (layout.kind == TableKind::points) {
     return AnyReader(make_point_table_reader(layout, source.options, source.file.path));
@@ -156,7 +157,7 @@ Result<AnyReader> make_table_reader(const TableLayout& layout, const Source& sou
       make_imu_table_reader(layout, source.options, source.file.path, source.file.node));
 }
 
-/// A declared layout reads one file and opens no other.
+/// A layout reads one file and opens no other file.
 FoundFormat table_format(TableLayout layout, const Source& source) {
   std::string name = layout.name;
   return {std::move(name),
@@ -165,7 +166,7 @@ FoundFormat table_format(TableLayout layout, const Source& source) {
           {}};
 }
 
-/// Refuses a selection that the format does not know: it would be ignored without notice.
+/// Refuses a key of `select` that the format does not know, because it would be ignored.
 Result<void> check_selection(const Format& format, const Source& source) {
   for (const auto& [name, value] : source.options.select) {
     if (name == format.selects) continue;
@@ -179,8 +180,8 @@ Result<void> check_selection(const Format& format, const Source& source) {
   return {};
 }
 
-/// Makes each later pass fail if one of the further files has changed. Only the main file is hashed
-/// while it is read, so the others are compared by their versions.
+/// Makes later passes fail if one of the further files has changed. Only the main file is hashed
+/// while it is read, so the version (size and times) of the other files is compared.
 FoundFormat watched(FoundFormat found) {
   std::vector<std::optional<FileVersion>> versions;
   for (const std::string& path : found.further_files) versions.push_back(version_of(path));
@@ -192,10 +193,10 @@ FoundFormat watched(FoundFormat found) {
   return found;
 }
 
-/// The format with its reader, its own survey and its further files, if it has any.
+/// Returns the format with its reader, its own first pass and its further files.
 Result<FoundFormat> program_format(const Format& format, const Source& source) {
   KA_TRY(check_selection(format, source));
-  // `format` is a row of the constant table, so a reference to it stays valid.
+  // `format` is an element of a constant array, so the reference stays valid.
   FoundFormat out{
       std::string(format.name), [&format, source] { return format.make(source); }, {}, {}};
   if (format.survey != nullptr) {
@@ -208,28 +209,30 @@ Result<FoundFormat> program_format(const Format& format, const Source& source) {
   return watched(std::move(out));
 }
 
-/// The reader of a file: a format, a layout, or neither.
+/// The format or the layout that recognises a file. Both may be absent.
 struct Recognized {
   const Format* format = nullptr;
   std::optional<TableLayout> layout{};
 };
 
-/// A layout that knows the columns but not the rows is used too: its reader reports the wrong row.
+/// If the columns agree with a layout but the rows do not, the layout is used. Its reader then
+/// reports the wrong row.
 Result<Recognized> recognize(std::string_view head, std::string_view path) {
   for (const Format& format : formats) {
     if (format.looks(head, path)) return Recognized{&format};
   }
-  // A file of an export whose first row is broken still has the columns of its layout.
-  std::optional<TableLayout> named;  // the first layout that knows the columns, if not the rows
+  // If the first row of a file is damaged, its columns still agree with a layout.
+  std::optional<TableLayout> named;  // the first layout whose columns agree, but not its rows
   for (const std::string_view name : builtin_layout_names()) {
     TableLayout layout = KA_TRY(parse_layout(*builtin_layout(name), name));
     if (matches(layout, head)) return Recognized{nullptr, std::move(layout)};
     if (!named && knows_columns(layout, head)) named = std::move(layout);
   }
-  return Recognized{nullptr, std::move(named)};  // its reader reports the wrong row
+  return Recognized{nullptr, std::move(named)};  // the layout's reader reports the wrong row
 }
 
-/// The format of the option `layout`: a format's name, a built-in layout's, or a layout file.
+/// Returns the format that the option `layout` names: a format, a built-in layout, or a layout
+/// file.
 Result<FoundFormat> named_format(const Source& source) {
   const std::string& wanted = source.options.layout;
   const auto* known = std::find_if(formats.begin(), formats.end(),
@@ -244,14 +247,13 @@ Result<FoundFormat> named_format(const Source& source) {
               fmt::format("a layout's path (*.toml) or one of {}", fmt::join(format_names(), ", ")),
               "'" + shown(wanted) + "'"});
   }
-  // Far more than any layout needs; a file of data that was named by mistake is not read whole.
+  // Far longer than any layout. If a data file is named by mistake, only this much is read.
   constexpr std::size_t longest_layout = std::size_t{1} << 20;
   const auto version = version_of(wanted);
   const std::string text = KA_TRY(read_whole(*source.files, wanted, longest_layout));
   FoundFormat out = table_format(KA_TRY(parse_layout(text, wanted)), source);
   out.further_files.push_back(wanted);
-  // The file may have changed between its version and its text. The take would then name a layout
-  // that was not used.
+  // If the file changed between these two calls, the take would name a layout that was not used.
   KA_TRY(unchanged(wanted, version));
   return watched(std::move(out));
 }
@@ -267,7 +269,7 @@ std::vector<std::string_view> format_names() {
   return names;
 }
 
-/// The user's choice comes before recognition, so that a file with an unusual beginning can be
+/// The user's choice has priority over recognition, so that a file with an unusual beginning can be
 /// read.
 Result<FoundFormat> find_format(FileSystem& files, const StreamOptions& options,
                                 const StreamFile& file, std::string_view head) {
@@ -281,13 +283,13 @@ Result<FoundFormat> find_format(FileSystem& files, const StreamOptions& options,
 
 Result<FileKind> kind_of_file(FileSystem& files, const std::string& path) {
   InputFile file = KA_TRY(InputFile::open(files, path));
-  std::array<char, 10> start{};  // the length of the longest signature
+  std::array<char, 10> start{};  // the longest signature has 10 bytes
   const std::string_view signature(start.data(), KA_TRY(file.read_at(0, start)));
   if (looks_like_recording(signature)) return FileKind::recording;
   if (looks_like_xdf(signature)) return FileKind::xdf;
   if (looks_like_hdf5(signature)) return FileKind::take;
   if (looks_like_model(signature)) return FileKind::model;
-  // A manifest is text without a signature, and a layout could take it for a table.
+  // A manifest is text without a signature, and a layout could recognise it as a table.
   if (path.ends_with(".toml")) return FileKind::manifest;
   const Recognized known = KA_TRY(recognize(KA_TRY(file.next()), path));
   return known.format != nullptr || known.layout ? FileKind::stream : FileKind::unknown;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The registry of formats: chooses a file's reader by the user's option or by the file's beginning.
+// The list of file formats. Chooses a file's reader by the user's option, or else by the first
+// bytes of the file.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -17,41 +18,43 @@
 
 namespace kinalign {
 
-/// Makes a fresh reader for each pass over a file.
+/// Makes a new reader for each pass over a file.
 using MakeReader = std::function<Result<AnyReader>()>;
-/// A first pass of the format's own, faster than reading every row.
+/// A first pass that a format implements itself, faster than reading every row.
 using SurveyClip = std::function<Result<ClipSurvey>(const Progress& progress)>;
 
-/// The reader that was chosen for one file. `make` and `survey` keep the file system and copies of
-/// the options; the file system must outlive them.
+/// The reader that was chosen for one file. `make` and `survey` keep copies of the options. They
+/// also use the file system, which must outlive them.
 struct FoundFormat {
   std::string name;  // "bvh", "trc", or the name of a layout
   MakeReader make;
-  std::vector<std::string> further_files;  // files that the reader opens itself
-  SurveyClip survey;                       // empty: the survey reads all rows
+  std::vector<std::string> further_files;  // further files that the reader opens
+  SurveyClip survey;                       // empty: the first pass reads all rows
 };
 
-/// Chooses by `options.layout` (the name of a format or of a built-in layout, or the path of a
-/// layout); if it is empty, by `head`, the file's first bytes. The error lists the known formats.
+/// Chooses by `options.layout`: the name of a format or of a built-in layout, or the path of a
+/// layout file. If it is empty, chooses by `head`, the first bytes of the file. The error lists the
+/// known formats.
 Result<FoundFormat> find_format(FileSystem& files, const StreamOptions& options,
                                 const StreamFile& file, std::string_view head);
 
-/// The kind of a file by its first bytes; a manifest, which has no signature, by its ending .toml.
+/// The kind of a file by its first bytes. A manifest has no signature and is recognised by its
+/// ending .toml.
 enum class FileKind : std::uint8_t {
   recording,  // MCAP
   xdf,
   take,   // HDF5
   model,  // SafeTensors
   manifest,
-  stream,   // a format or a built-in layout knows it; its reader may still refuse it
-  unknown,  // also an empty file; a layout that the user names may read it as a stream
+  stream,   // recognised by a format or a built-in layout; the reader may still refuse the file
+  unknown,  // also an empty file; the user may name a layout that reads it as a stream
 };
 
-/// Reads the beginning of the file once. Fails if the file can't be opened or read. Signatures are
-/// tried first, then the ending .toml, then formats and layouts.
+/// Reads the first bytes of the file. Signatures are checked first, then the ending .toml, then
+/// formats and layouts. Fails if the file can't be opened or read.
 Result<FileKind> kind_of_file(FileSystem& files, const std::string& path);
 
-/// The names that `layout` may have besides paths.
+/// Returns the names that `layout` may have, apart from paths.
 std::vector<std::string_view> format_names();
 
 }  // namespace kinalign

@@ -12,7 +12,7 @@ Result<InputFacts> facts_of(FileSystem& files, const std::string& path, std::str
   std::uint64_t bytes = 0;
   for (;;) {
     const std::string_view piece = KA_TRY(file.next());
-    // Progress is asked for after each block, so that large files can be interrupted.
+    // Progress is reported after each block, so that the user can interrupt long reading.
     if (piece.empty()) return InputFacts{std::string(file_name(path)), hash.hex(), bytes};
     bytes += piece.size();
     hash.update(piece);

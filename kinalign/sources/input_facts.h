@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The name, hash and length of a whole file, which a take stores for its inputs.
+// Computes the name, hash and length of a whole file, which a take stores for each input.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -11,7 +11,7 @@
 
 namespace kinalign {
 
-/// Reads the whole file. `doing`: the word for `progress`, "reading" or "hashing".
+/// Reads the whole file. `doing` is the word for `progress`: "reading" or "hashing".
 Result<InputFacts> facts_of(FileSystem& files, const std::string& path, std::string_view doing,
                             const Progress& progress);
 

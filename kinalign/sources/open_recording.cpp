@@ -18,8 +18,8 @@ namespace kinalign {
 
 namespace {
 
-/// The clock by the stream's options: offset and drift begin at the first stamp. A file states no
-/// clock; the user does. One piece therefore describes it.
+/// Makes the clock from the stream's options; offset and drift begin at the first stamp. The file
+/// does not state its clock, and the user states a constant drift, so one piece suffices.
 TimeModel clock_of(const StreamOptions& options, const StampSurvey& survey) {
   TimeModel model = options.clock == "shared" ? shared_clock() : TimeModel{};
   TimeModelPiece& piece = model.pieces.front();
@@ -30,16 +30,16 @@ TimeModel clock_of(const StreamOptions& options, const StampSurvey& survey) {
   return model;
 }
 
-/// The clock that a recording states, moved by the user's offset. Its other options are refused
-/// (align/unused_options.h), since the recording knows better.
+/// Adds the user's offset to the clock that a recording states. The other clock options are refused
+/// (align/unused_options.h), because the recording's clock is more accurate.
 TimeModel moved_by(TimeModel model, const StreamOptions& options) {
   const Duration by{std::llround(options.offset_ms * 1e6)};
   for (TimeModelPiece& piece : model.pieces) piece.offset += by;
   return model;
 }
 
-/// Sums up the progress of files that are read in parallel. The lock also keeps the promise that
-/// progress is never called on two threads at once.
+/// Adds up the progress of files that are read in parallel. The lock ensures that progress is never
+/// called on two threads at once.
 class SharedProgress {
  public:
   SharedProgress(const Progress& progress, std::size_t parts)
@@ -50,7 +50,7 @@ class SharedProgress {
     return [this, i](std::string_view what, std::uint64_t done, std::uint64_t total) {
       const std::lock_guard lock(mutex_);
       parts_[i] = {done, total};
-      // Totals become known when files are opened, so the sum of totals grows at first.
+      // A total becomes known when its file is opened, so the sum of totals grows at first.
       Part sum;
       for (const Part& each : parts_) {
         sum.done += each.done;
@@ -69,21 +69,21 @@ class SharedProgress {
   std::vector<Part> parts_;
 };
 
-/// A file of a stream, with the options and paths as seen from the current folder. The manifest
-/// itself is not changed: the take stores it as the user wrote it. `stated` leads into the
-/// manifest, which must outlive it.
+/// A file of a stream. Its options and paths are relative to the current folder. The manifest
+/// itself is not changed, because the take stores the user's text. `stated` points into the
+/// manifest, which must outlive this object.
 struct NamedFile {
   const StreamOptions* stated = nullptr;
   StreamOptions options;
   StreamFile file;
   std::string remembered;  // its name in the take
-  bool is_first = true;    // of its stream
-  // The name in messages: "mocap", "imu waist".
+  bool is_first = true;    // it is the first file of its stream
+  // The name in messages, such as "mocap" or "imu waist".
   std::string name() const { return options.name + (file.node.empty() ? "" : " " + file.node); }
 };
 
-/// The files of all streams, with their names in the take. Names depend on all paths together,
-/// since equal file names get their folders.
+/// Returns the files of all streams with their names in the take. If two files have the same name,
+/// their folders are added, so the names depend on all paths.
 Result<std::vector<NamedFile>> named_files(const std::vector<StreamOptions>& streams,
                                            const std::string& folder) {
   std::vector<std::string> paths;
@@ -111,8 +111,8 @@ Result<std::vector<NamedFile>> named_files(const std::vector<StreamOptions>& str
   return named;
 }
 
-/// Opens a file; `recording`: the opened recording with its stream, if the file is one. Gives the
-/// stream's files their names in the take, and sets the clock.
+/// Opens a file, gives the stream's files their names in the take, and sets the clock. If the file
+/// is a recording, `recording` is the opened recording with its stream.
 Result<SurveyedFile> open_file(FileSystem& files, const std::string& folder, const NamedFile& named,
                                const std::shared_ptr<RecordingSource>& recording,
                                const Progress& progress) {
@@ -120,12 +120,12 @@ Result<SurveyedFile> open_file(FileSystem& files, const std::string& folder, con
   SurveyedFile out =
       KA_TRY(recording ? survey_device(files, options, named.file, recording, progress)
                        : survey_file(files, options, named.file, progress));
-  // The files of the first node hold what all nodes share, such as a layout.
+  // Files that all nodes share, such as a layout, are listed only with the first node.
   if (!named.is_first) {
     out.paths.resize(1);
     out.stream.files.resize(1);
   }
-  // The order of the names is that of the paths: the stream's own file is first.
+  // Names and paths have the same order: the stream's own file is first.
   out.stream.files.front().name = named.remembered;
   for (std::size_t i = 1; i < out.paths.size(); ++i) {
     const std::string& path = out.paths[i];
@@ -143,8 +143,8 @@ Result<SurveyedFile> open_file(FileSystem& files, const std::string& folder, con
   return out;
 }
 
-/// Fails if two different files would have one name in the take, since `rebuild` could not tell
-/// them apart, or if a name is not UTF-8, since `rebuild` could not find the file.
+/// Fails if two different files have the same name in the take, because `rebuild` could not
+/// distinguish them. Also fails if a name is not UTF-8, because `rebuild` could not find the file.
 Result<void> check_names(const std::vector<SurveyedFile>& opened) {
   struct Place {
     const std::string* path;
@@ -160,7 +160,7 @@ Result<void> check_names(const std::vector<SurveyedFile>& opened) {
                              "'" + shown(facts.name) + "'"});
       }
       const auto [at, fresh] = seen.try_emplace(facts.name, Place{&each.paths[i], &facts});
-      // The same bytes under one name are no conflict: either file makes the same take.
+      // If both files have the same bytes, either file makes the same take.
       if (fresh || at->second.facts->sha256 == facts.sha256) continue;
       return Failure(Error{each.paths[i], 0,
                            "files that a take can tell apart by name (below the manifest's folder: "
@@ -171,8 +171,8 @@ Result<void> check_names(const std::vector<SurveyedFile>& opened) {
   return {};
 }
 
-/// The files of one stream share an axis: if start_ns is given, it is the stamp of the earliest
-/// sample of all files.
+/// All files of one stream have one time axis. If start_ns is given, it is the stamp of the
+/// earliest sample of all files.
 Result<void> start_together(const StreamOptions& options, std::vector<SurveyedFile>& opened) {
   if (!options.start_ns || options.files.size() < 2) return {};
   std::optional<std::int64_t> first;
@@ -185,7 +185,7 @@ Result<void> start_together(const StreamOptions& options, std::vector<SurveyedFi
     if (!first || each.stream.name != options.name) continue;
     const std::int64_t shift = *options.start_ns - *first;
     const std::int64_t last = to_ns(each.stream.survey.last);
-    // Stamps far from 1970 could leave 64 bits when they are moved.
+    // A stamp far from 1970 could overflow 64 bits when it is shifted.
     if (std::abs(shift) > largest_stamp_ns ||
         last > largest_stamp_ns - std::max<std::int64_t>(0, shift)) {
       return Failure(Error{each.paths.front(), 0, "a stamp inside +-4e18 ns",
@@ -196,7 +196,7 @@ Result<void> start_together(const StreamOptions& options, std::vector<SurveyedFi
   return {};
 }
 
-/// Fails if the subject, the action or a name is not UTF-8: a take stores them.
+/// Fails if the subject, the action or a name is not UTF-8, because a take stores them as UTF-8.
 Result<void> check_texts(const Manifest& manifest) {
   std::vector<std::string> texts{manifest.subject, manifest.action};
   for (const StreamOptions& stream : manifest.streams) {
@@ -211,23 +211,23 @@ Result<void> check_texts(const Manifest& manifest) {
   return {};
 }
 
-/// Files that are opened together: the streams of one recording, or a single file.
+/// Files that are opened together: the files of all streams of one recording, or a single file.
 struct Group {
-  std::string path;                // in the spelling of the first file
+  std::string path;                // as written for the first file
   std::filesystem::path one_path;  // the same for ./a.mcap and a.mcap
   bool is_recording = false;
   std::vector<std::size_t> named;  // indices of the files
 };
 
-/// Links are not followed: the same file under two names is read twice, which costs only time.
+/// Links are not resolved. The same file under two names is read twice, which only costs time.
 std::filesystem::path normal_path(const std::string& path) {
   std::error_code fault;
   const auto whole = std::filesystem::absolute(path, fault);
   return fault ? std::filesystem::path(path) : whole.lexically_normal();
 }
 
-/// Streams without a layout that name one recording form a group, so that it is read once. A layout
-/// states another reader, so such a file is opened by itself.
+/// Streams that name one recording and no layout form a group, so that the recording is read once.
+/// A layout requires another reader, so a file with a layout is opened alone.
 std::vector<Group> groups_of(FileSystem& files, const std::vector<NamedFile>& named) {
   std::vector<Group> groups;
   for (std::size_t i = 0; i < named.size(); ++i) {
@@ -241,14 +241,14 @@ std::vector<Group> groups_of(FileSystem& files, const std::vector<NamedFile>& na
       known->named.push_back(i);
       continue;
     }
-    const auto recording = is_recording(files, path);  // opening reports a fault
+    const auto recording = is_recording(files, path);  // opening the file later reports a fault
     groups.push_back({path, one_path, !has_layout && recording && *recording, {i}});
   }
   return groups;
 }
 
-/// The recording of a group, opened once for all of its streams; nullptr for another file. `given`:
-/// a source that the caller has opened already.
+/// Opens the recording of a group once for all its streams. Returns nullptr for another kind of
+/// file. `given`: a recording that the caller has already opened.
 Result<std::shared_ptr<RecordingSource>> recording_of(FileSystem& files, const Group& group,
                                                       const std::vector<NamedFile>& named,
                                                       const std::shared_ptr<RecordingSource>& given,
@@ -264,8 +264,8 @@ Result<std::shared_ptr<RecordingSource>> recording_of(FileSystem& files, const G
                                progress);
 }
 
-/// Opens all files, groups in parallel. Failures become warnings in `left_out`; if it is nullptr,
-/// the first failure in the order of the files is returned.
+/// Opens all files, groups in parallel. Failures become warnings in `left_out`. If that is nullptr,
+/// the failure of the first failing file is returned.
 Result<std::vector<SurveyedFile>> open_all(FileSystem& files, const std::string& folder,
                                            const std::vector<StreamOptions>& streams,
                                            const OpenWith& with, Findings* left_out = nullptr) {
@@ -276,7 +276,7 @@ Result<std::vector<SurveyedFile>> open_all(FileSystem& files, const std::string&
   parallel_for(groups.size(), with.jobs, [&](std::size_t g) {
     const Progress progress = shared.part(g);
     const auto source = recording_of(files, groups[g], named, with.recording, progress);
-    // If the recording can't be opened, each of its streams gets that error.
+    // If the recording can't be opened, each of its streams gets the error.
     for (const std::size_t i : groups[g].named) {
       opened[i] = source ? open_file(files, folder, named[i], *source, progress)
                          : Result<SurveyedFile>(Failure(source.error()));
@@ -284,7 +284,7 @@ Result<std::vector<SurveyedFile>> open_all(FileSystem& files, const std::string&
   });
   std::vector<SurveyedFile> out;
   for (std::size_t i = 0; i < opened.size(); ++i) {
-    // An interruption concerns all files, so it ends the whole call.
+    // An interruption by the user ends the whole call.
     if (opened[i] || left_out == nullptr || is_interruption(opened[i].error())) {
       out.push_back(KA_TRY(std::move(opened[i])));
     } else {
@@ -292,13 +292,13 @@ Result<std::vector<SurveyedFile>> open_all(FileSystem& files, const std::string&
           {Severity::warning, opened[i].error(), named[i].name() + " is left out", ""});
     }
   }
-  // Only with all files open is the earliest stamp of a stream known.
+  // The earliest stamp of a stream is known only after all its files were opened.
   for (const StreamOptions& options : streams) KA_TRY(start_together(options, out));
   return out;
 }
 
-/// The recording of these files. Streams of one recording refer to it as a shared file, so that its
-/// findings and marks are reported once.
+/// Makes the Recording of the opened files. Streams of one recording refer to a shared file, so
+/// that its findings and marks are reported once.
 Recording joined(const Manifest& manifest, std::vector<SurveyedFile> opened) {
   Recording out{manifest.subject, manifest.action, {}, {}};
   std::vector<const RecordingSource*> sources;
@@ -316,7 +316,8 @@ Recording joined(const Manifest& manifest, std::vector<SurveyedFile> opened) {
   return out;
 }
 
-/// Fails if a take could not hold the names in the manifest, or could not name the files.
+/// Opens all files of a manifest. Fails if a take can't store the names of the manifest or of the
+/// files.
 Result<Recording> open_manifest(FileSystem& files, const Manifest& manifest,
                                 const std::string& folder, const OpenWith& with,
                                 Findings* left_out) {
@@ -328,7 +329,7 @@ Result<Recording> open_manifest(FileSystem& files, const Manifest& manifest,
 
 }  // namespace
 
-/// Streams without a manifest are not stored in a take, so their names need not differ.
+/// Streams without a manifest are not stored in a take, so several may have the same name.
 Result<Recording> open_streams(FileSystem& files, const std::vector<StreamOptions>& streams,
                                const OpenWith& with) {
   return joined({}, KA_TRY(open_all(files, "", streams, with)));
@@ -350,7 +351,7 @@ Result<void> read_through(const Recording& recording, const Progress& progress) 
   std::vector<ReadNext> passes;
   std::uint64_t rows = 0, all = 0;
   for (const RecordedStream& stream : recording.streams) {
-    // Streams whose findings are known were read to their ends already.
+    // If the findings of a stream are known, the stream was already read to its end.
     if (!stream.late_findings || *stream.late_findings) continue;
     all += stream.survey.samples;
     KA_TRY(std::visit(

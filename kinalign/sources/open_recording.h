@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opens files as a Recording. Each file is read once to hash it and to survey its stamps; alignment
-// can then read it again in blocks, as often as needed.
+// Opens files as a Recording. Each file is read once to hash it and to survey its stamps. Alignment
+// can then read the file again in blocks, as often as needed.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -15,27 +15,27 @@
 
 namespace kinalign {
 
-/// The way in which files are opened. None of it changes the result.
+/// Options for opening files. They do not change the result.
 struct OpenWith {
   Progress progress{};  // never called on two threads at once
-  /// Threads to use. Files are read in parallel, which changes only the time needed.
+  /// Number of threads. With several threads, files are read in parallel.
   std::size_t jobs = 1;
-  /// A recording that is open already, if the streams are in it.
+  /// The recording that contains the streams, if the caller has already opened it.
   std::shared_ptr<RecordingSource> recording{};
 };
 
-/// Opens streams: one for each, or one for each file of nodes. Paths are relative to the current
-/// folder. `files` must outlive the streams. A recording is read once, however many streams it has.
-/// If several files fail, the first failure in the order of the files is returned.
+/// Opens streams: one for each element, or one for each file of nodes. Paths are relative to the
+/// current folder. `files` must outlive the streams. A recording is read once, even if several of
+/// its streams are opened. If several files fail, the failure of the first file is returned.
 Result<Recording> open_streams(FileSystem& files, const std::vector<StreamOptions>& streams,
                                const OpenWith& with = {});
 
-/// Opens all streams of a manifest; relative paths are relative to `folder` ("" or ending in '/').
+/// Opens all streams of a manifest. Relative paths are relative to `folder` ("" or ending in '/').
 Result<Recording> open_recording(FileSystem& files, const Manifest& manifest,
                                  const std::string& folder, const OpenWith& with = {});
 
-/// The streams that could be opened, and a warning with the reason for each that could not.
-/// Programs that show or convert a recording use what there is.
+/// The streams that could be opened, and for each other stream a warning with the reason. Programs
+/// that show or convert a recording use the streams that are available.
 struct OpenedInPart {
   Recording recording;
   Findings left_out;
@@ -43,7 +43,7 @@ struct OpenedInPart {
 Result<OpenedInPart> open_what_can_be(FileSystem& files, const Manifest& manifest,
                                       const std::string& folder, const OpenWith& with = {});
 
-/// Reads those streams in parallel to their ends whose late findings are not known yet.
+/// Reads streams to their ends in parallel, if their late findings are not known yet.
 Result<void> read_through(const Recording& recording, const Progress& progress = {});
 
 }  // namespace kinalign

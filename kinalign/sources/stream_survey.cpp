@@ -19,7 +19,7 @@ namespace {
 ClipInput input_of(const Skeleton& header, Passes<ClipFrames> passes) {
   return {header, std::move(passes)};
 }
-/// Takes store UTF-8; older files may have names in other encodings.
+/// Converts names to UTF-8, because takes store UTF-8 and older files may have other encodings.
 std::vector<std::string> all_as_utf8(std::vector<std::string> names) {
   for (std::string& name : names) name = as_utf8(name);
   return names;
@@ -33,8 +33,7 @@ ImuInput input_of(const ImuHeader& header, Passes<ImuSamples> passes) {
 
 using Version = std::optional<FileVersion>;
 
-/// A file in the middle of a pass. All copies of a pass share one Reading, so they share its place
-/// in the file.
+/// A file during a pass. All copies of a pass share one Reading, and thus the position in the file.
 template <class R>
 struct Reading {
   InputFile file;
@@ -43,11 +42,12 @@ struct Reading {
   bool ended = false;
 
   Result<bool> next(typename R::Frames& block) {
-    // A piece of a file may contain no complete row, but a pass never returns an empty block.
+    // A piece of a file may contain no complete row. A pass must not return an empty block, so
+    // several pieces may be read.
     block = {};
     while (block.size() == 0 && !ended) {
       const std::string_view piece = KA_TRY(file.next());
-      // Each piece is checked, because the file may change while it is read.
+      // The version is checked after each piece, because the file may change while it is read.
       KA_TRY(unchanged(file.path(), version));
       if (!piece.empty()) {
         KA_TRY(reader->feed(piece, block));
@@ -60,8 +60,8 @@ struct Reading {
   }
 };
 
-/// Passes over a file with a fresh reader each. A pass fails if the file has changed since it was
-/// surveyed.
+/// Returns a function that starts passes over a file, each with a new reader. A pass fails if the
+/// file has changed since the survey.
 template <class R>
 Passes<typename R::Frames> passes_of(FileSystem& files, std::string path, const Version& version,
                                      MakeReader make) {
@@ -76,7 +76,7 @@ Passes<typename R::Frames> passes_of(FileSystem& files, std::string path, const 
       };
 }
 
-/// The first pass: hashes the file and surveys stamps and values; rows are dropped.
+/// The first pass: hashes the file and surveys stamps and values. Rows are not stored.
 template <class R>
 Result<RecordedStream> survey(InputFile& file, std::string_view head, std::unique_ptr<R> reader,
                               Passes<typename R::Frames> passes, const Progress& progress) {
@@ -85,13 +85,13 @@ Result<RecordedStream> survey(InputFile& file, std::string_view head, std::uniqu
   typename R::Frames block;
   auto sizes = sizes_of(block);
   const auto take_block = [&] {
-    // The block is emptied after each piece, so that the survey needs little memory for any length.
+    // The block is emptied after each piece, so memory does not grow with the file.
     surveyor.add(block.stamps);
     sizes.add(block);
     block = {};
   };
   std::uint64_t bytes = 0;
-  // The first piece was read to find the format. It is the beginning of the same pass.
+  // The first piece was already read to find the format. The pass begins with it.
   std::string_view piece = head;
   while (!piece.empty()) {
     bytes += piece.size();
@@ -106,7 +106,7 @@ Result<RecordedStream> survey(InputFile& file, std::string_view head, std::uniqu
   KA_TRY(reader->finish(block));
   take_block();
   RecordedStream out;
-  // The reader knows only now whether the file has stamps, and what its header says.
+  // Whether the file has stamps, and what its header states, is known only after reading.
   out.counted = reader->counted;
   out.data = input_of(*reader->header(), std::move(passes));
   out.survey = surveyor.result();
@@ -116,8 +116,8 @@ Result<RecordedStream> survey(InputFile& file, std::string_view head, std::uniqu
   return out;
 }
 
-/// The stream of a format with a first pass of its own, for skeletons. A BVH has no stamps: they
-/// are counted by its step.
+/// Returns the stream of a skeleton format that has its own first pass. A BVH has no stamps, so
+/// stamps are counted by its frame time.
 RecordedStream clip_stream(const StreamOptions& options, const ClipSurvey& made,
                            Passes<ClipFrames> passes) {
   RecordedStream out;
@@ -127,13 +127,13 @@ RecordedStream clip_stream(const StreamOptions& options, const ClipSurvey& made,
   out.files.push_back(made.facts);
   out.findings = made.findings;
   out.data = input_of(made.skeleton, std::move(passes));
-  // The clicks belong to the user's manifest, so the reader can't judge them.
+  // The clicks are in the user's manifest, which the reader does not know, so they are judged here.
   append(out.findings, judge_survey(made, options));
   return out;
 }
 
-/// The passes over a device's stream. The first pass read to its end stores the findings about
-/// values.
+/// Returns passes over a device's stream. The first pass that reaches the end stores the findings
+/// about values.
 template <class Frames>
 Passes<Frames> device_passes(DevicePasses<Frames> passes,
                              typename DevicePass<Frames>::Header header, std::string path,
@@ -149,8 +149,8 @@ Passes<Frames> device_passes(DevicePasses<Frames> passes,
         reading->sizes.add(block);
         return true;
       }
-      // Several passes may end; the findings are the same for all of them, so the first ones are
-      // kept.
+      // Several passes may reach the end. All have the same findings, so only the first ones are
+      // stored.
       if (*late) return false;
       Findings found = reading->pass.findings();
       append(found, reading->sizes.judge(header, path));
@@ -164,8 +164,8 @@ Passes<Frames> device_passes(DevicePasses<Frames> passes,
 
 Result<SurveyedFile> survey_file(FileSystem& files, const StreamOptions& options,
                                  const StreamFile& named, const Progress& progress) {
-  // The version is taken before the file is opened. A change during the first pass is then noticed
-  // by the passes after it.
+  // The version is read before the file is opened, so that later passes notice a change during the
+  // first pass.
   const Version version = version_of(named.path);
   InputFile file = KA_TRY(InputFile::open(files, named.path));
   const std::string head(KA_TRY(file.next()));
@@ -186,7 +186,7 @@ Result<SurveyedFile> survey_file(FileSystem& files, const StreamOptions& options
   }
   out.stream.name = options.name;
   out.stream.format = format.name;
-  // Files that the reader opens itself are inputs, too: the take stores their names and hashes.
+  // Files that the reader opens itself are inputs too, so the take stores their names and hashes.
   for (const std::string& further : format.further_files) {
     out.stream.files.push_back(KA_TRY(facts_of(files, further, "reading", progress)));
     out.paths.push_back(further);
@@ -206,20 +206,20 @@ Result<SurveyedFile> survey_device(FileSystem& files, const StreamOptions& optio
   stream.name = options.name;
   stream.format = "recording";
   stream.survey = made.survey;
-  // A take's grid is never a stream of nodes; only a grid's rows are counted by these stamps
-  // (align/plan.cpp).
+  // The stamps are needed to count the rows of the take's grid (align/plan.cpp). A stream of nodes
+  // is never the grid.
   if (!std::holds_alternative<ImuHeader>(made.header)) stream.stamps = std::move(made.stamps);
   stream.findings = std::move(made.findings);
   stream.late_findings = std::make_shared<std::optional<Findings>>();
   std::visit(
-      // One call for each kind of stream; passes and header are of the same kind.
+      // The call is made for the kind of the stream; passes and header have the same kind.
       [&]<class Frames>(const DevicePasses<Frames>& passes) {
         const auto& header = std::get<typename DevicePass<Frames>::Header>(made.header);
         stream.data = input_of(
             header, device_passes<Frames>(passes, header, named.path, stream.late_findings));
       },
       made.passes);
-  // An empty stream has few reasons to be read later, but its findings say why it is empty.
+  // An empty stream is read to its end now, because its findings tell why it is empty.
   if (stream.survey.samples == 0) {
     KA_TRY(std::visit(
         [&stream](const auto& input) -> Result<void> {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first pass over a stream's file: hashes and surveys it; rows are dropped.
+// The first pass over a stream's file. It hashes and surveys the file and does not store rows.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -15,20 +15,20 @@
 
 namespace kinalign {
 
-/// A stream that was surveyed, and what its caller needs to name its files and to set its clock.
+/// A surveyed stream, with the data that its caller needs to name the files and to set the clock.
 struct SurveyedFile {
-  RecordedStream stream;           // its files have only their names
-  std::vector<std::string> paths;  // paths of these files; the stream's own first
-  std::optional<TimeModel> clock;  // set if the file itself states the clock of its stamps
-  std::shared_ptr<RecordingSource> recording;  // the recording with the stream, if any
+  RecordedStream stream;           // its files have names only
+  std::vector<std::string> paths;  // paths of these files; the stream's own file is first
+  std::optional<TimeModel> clock;  // set if the file states the clock of its stamps
+  std::shared_ptr<RecordingSource> recording;  // the recording that contains the stream, if any
 };
 
-/// Surveys a file. The paths in `file` and `options` can be opened from here; `files` must outlive
-/// the stream. Later passes fail if the file has changed.
+/// Surveys a file. Paths in `file` and `options` must be relative to the current folder. `files`
+/// must outlive the stream. Later passes fail if the file has changed.
 Result<SurveyedFile> survey_file(FileSystem& files, const StreamOptions& options,
                                  const StreamFile& file, const Progress& progress);
 
-/// The same for one device of a recording, which has been read already.
+/// Surveys one device of a recording that was already read.
 Result<SurveyedFile> survey_device(FileSystem& files, const StreamOptions& options,
                                    const StreamFile& file,
                                    const std::shared_ptr<RecordingSource>& recording,

@@ -14,42 +14,42 @@ namespace kinalign {
 
 namespace {
 
-// The names that a recorder uses itself for ports and topics; no device may have one.
+// Names that the recorder uses for its own ports and topics. No device may have such a name.
 const std::vector<std::string> own_names{"marks", "trigger", "clock", "counts"};
 
 bool is_one_of(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Port 0 is allowed: the system then chooses a free one.
+/// Port 0 is allowed: the system then chooses a free port.
 Result<std::int64_t> parse_port(const std::string& text) {
   std::int64_t port = -1;
   if (parse_integer(text, port) && port >= 0 && port <= 65535) return port;
   return Failure(Error{"", 0, "a port from 0 to 65535", text.empty() ? "nothing" : shown(text)});
 }
 
-/// The failure of a device with another value than expected.
+/// Returns the failure for an option of a device with an unexpected value.
 Failure wrong(const DeviceOptions& device, std::string expected, std::string found) {
   return Failure(Error{device.name, 0, std::move(expected), std::move(found)});
 }
 
-/// True for IPv4 and IPv6. An interface may stand after a '%'; the system checks it when the port
-/// is opened.
+/// Returns whether the text is an IPv4 or IPv6 address. An interface may follow after '%'; the
+/// system checks the interface when the port is opened.
 bool is_ip_address(const std::string& text) {
   in6_addr room{};
   return ::inet_pton(AF_INET, text.c_str(), &room) == 1 ||
          ::inet_pton(AF_INET6, text.substr(0, text.find('%')).c_str(), &room) == 1;
 }
 
-/// True if this machine opens the connection; otherwise it waits for the device.
+/// Returns whether this machine opens the connection. Otherwise it waits for the device.
 bool connects(const DeviceOptions& device) {
   return find_transport(device.transport) == Transport::tcp;
 }
 
-/// Fails if the device can't be reached and can't reach this machine.
+/// Fails if neither the device nor this machine can open the connection.
 Result<void> check_place(const DeviceOptions& device, const ProtocolRow& row) {
   const auto transport = find_transport(device.transport);
-  // A protocol that has one transport is never recorded over another: no packet would arrive.
+  // If the protocol needs another transport, no packet would arrive.
   if (transport && !may_come_over(row, *transport)) {
     return wrong(device,
                  "transport " + std::string(name_of(row.transports.front())) +
@@ -67,25 +67,25 @@ Result<void> check_place(const DeviceOptions& device, const ProtocolRow& row) {
   return {};
 }
 
-/// True for the addresses that stand for every interface of this machine, IPv4 or IPv6.
+/// Returns whether the address means every interface of this machine, IPv4 or IPv6.
 bool is_every(const std::string& address) {
   return address.empty() || address == "0.0.0.0" || address == "::";
 }
 
-/// Fails if two devices have one name, one port, or are both devices of nodes.
+/// Fails if two devices have the same name or port, or if both are devices of nodes.
 Result<void> check_pair(const DeviceOptions& device, const DeviceOptions& other) {
   if (other.name == device.name) {
     return wrong(device, "a different name for each device", device.name + " twice");
   }
-  // One device stands for all nodes, which differ by their ids.
+  // All nodes together are one device; their ids distinguish them.
   const auto protocol = find_protocol(device.protocol);
   if (protocol && row_of(*protocol).has_node_ids && other.protocol == device.protocol) {
     return wrong(device, "one device for all nodes", "a second one, " + other.name);
   }
-  const bool serves = !connects(device);  // an address left out means every one
+  const bool serves = !connects(device);  // a missing address means every address
   const bool same_place = other.address == device.address ||
                           (serves && (is_every(device.address) || is_every(other.address)));
-  // A free port (0) never collides. The same number over UDP and TCP is two ports.
+  // Port 0 is never the same port. UDP and TCP may use the same number.
   const bool same_port = device.port != 0 && other.port == device.port &&
                          other.transport == device.transport && same_place;
   if (!same_port) return {};
@@ -96,8 +96,8 @@ bool is_number(const std::string& text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Fails unless each place belongs to one node and can't be another node's id. Nodes are called by
-/// their places, and a node without a place may send, too, and is called by its id.
+/// Fails if two nodes have the same place, or if a place may be another node's id. Messages name a
+/// node by its place, or by its id if it has no place. Nodes that are not listed may send too.
 Result<void> check_places(const DeviceOptions& device) {
   std::map<std::string, std::string> ids;  // by place
   for (const auto& [id, place] : device.nodes) {
@@ -106,7 +106,7 @@ Result<void> check_places(const DeviceOptions& device) {
       return wrong(device, "a place of its own for each node",
                    shown(place) + " of nodes " + other->second + " and " + id);
     }
-    // A place may be a number only if it is the node's own id.
+    // A place may be a number only if that number is the node's own id.
     if (place != id && is_number(place)) {
       return wrong(device, "the name of a place, such as waist: a number may be another node's id",
                    shown(place) + " of node " + id);
@@ -115,7 +115,7 @@ Result<void> check_places(const DeviceOptions& device) {
   return {};
 }
 
-/// Fails if an option of the device has no meaning for its protocol.
+/// Fails if an option of the device has no effect for its protocol.
 Result<void> check_use(const DeviceOptions& device, const ProtocolRow& row) {
   if (!device.skeleton.empty() && !row.needs_skeleton) {
     return wrong(device, "skeleton only for protocol noitom", "protocol " + device.protocol);
@@ -128,7 +128,8 @@ Result<void> check_use(const DeviceOptions& device, const ProtocolRow& row) {
   }
   for (const auto& [id, place] : device.nodes) {
     std::uint32_t number = 0;
-    // The text must be the number's usual form: "07" and "7" would be one node under two keys.
+    // Only the usual form of the number is accepted. Otherwise "07" and "7" would name one node
+    // twice.
     if (!parse_integer(id, number) || std::to_string(number) != id) {
       return wrong(device, "a node's id, a whole number, as each key of nodes", shown(id));
     }
@@ -137,7 +138,7 @@ Result<void> check_use(const DeviceOptions& device, const ProtocolRow& row) {
   return check_places(device);
 }
 
-/// Checks the name, which is printed on terminals and used for ports and topics.
+/// Checks the name, which appears on terminals and in topics, and names the port.
 Result<void> check_name(const DeviceOptions& device) {
   const bool harmless = std::none_of(device.name.begin(), device.name.end(),
                                      [](unsigned char c) { return c < ' ' || c == 0x7f; });
@@ -149,7 +150,7 @@ Result<void> check_name(const DeviceOptions& device) {
 
 }  // namespace
 
-/// The address may contain colons (IPv6), so the port is taken from the end first.
+/// An IPv6 address contains colons, so the port is parsed first, from the end.
 Result<DeviceOptions> parse_device(const std::string& text) {
   const Failure unlike(Error{"", 0, "NAME=PROTOCOL:PORT, such as imu=nodes:5005", shown(text)});
   const auto equals = text.find('=');
@@ -188,7 +189,7 @@ void set_device(Lab& lab, const DeviceOptions& stated) {
 }
 
 Result<void> validate(const Lab& lab) {
-  // Each device is compared with the earlier ones only, so a pair gives one error.
+  // Each device is compared only with earlier devices, so a pair of devices gives one error.
   for (std::size_t i = 0; i < lab.devices.size(); ++i) {
     const DeviceOptions& device = lab.devices[i];
     KA_TRY(check_stream_name(device.name));
@@ -208,7 +209,7 @@ double nominal_rate_hz(const DeviceOptions& device) {
   return protocol ? row_of(*protocol).usual_rate_hz : 0.0;
 }
 
-/// The options are listed once; flags, TOML and help are made from this list.
+/// All options are listed here once. Flags, TOML and help are made from this list.
 Fields describe(DeviceOptions& o) {
   return {
       {"protocol", "protocol of the device", &o.protocol, -unlimited, unlimited, protocol_names()},

@@ -8,7 +8,7 @@
 namespace kinalign {
 
 namespace {
-// The limit of options in milliseconds: longer gaps or delays are errors of the unit.
+// The limit of options in milliseconds. Longer gaps or delays come from a wrong unit.
 constexpr double day_ms = 86'400'000.0;
 }  // namespace
 
@@ -17,7 +17,7 @@ std::int64_t line_of(const KeyLines& lines, const std::string& key) {
   return found == lines.end() ? 0 : found->second;
 }
 
-// A recording may have streams that the manifest does not name, so an unknown name is no error.
+// A recording may have streams that the manifest does not name, so an unknown name is not an error.
 const StreamOptions& options_of(const Manifest& manifest, const std::string& stream) {
   static const StreamOptions defaults;
   for (const StreamOptions& s : manifest.streams) {
@@ -26,8 +26,8 @@ const StreamOptions& options_of(const Manifest& manifest, const std::string& str
   return defaults;
 }
 
-/// The pointers lead into the manifest, so that a caller can change the paths, for example to those
-/// of a data set. They are valid until the manifest's lists change.
+/// The pointers refer to the manifest itself, so that a caller can change the paths. They are valid
+/// until the manifest's lists change.
 std::vector<std::string*> paths_in(Manifest& manifest) {
   std::vector<std::string*> paths;
   for (StreamOptions& stream : manifest.streams) {
@@ -39,8 +39,8 @@ std::vector<std::string*> paths_in(Manifest& manifest) {
 }
 
 Result<void> check_stream_name(const std::string& name) {
-  // The names that the take's own data sets and attributes have (docs/formats/take.md), and the two
-  // that mean folders in HDF5.
+  // Names of the data sets and attributes of a take itself (docs/formats/take.md), and the two
+  // names that mean folders in HDF5.
   constexpr std::array<std::string_view, 7> taken{
       "time_ns", "seconds", "t0_ns", "report_json", "parameters_json", ".", ".."};
   const bool good = !name.empty() && name.find('/') == std::string::npos &&
@@ -55,7 +55,7 @@ Fields describe(Manifest& o) {
   return {{"subject", "who moves", &o.subject}, {"action", "what the person does", &o.action}};
 }
 
-/// The ranges below keep stamps and their offsets within 64 bits of nanoseconds.
+/// The ranges below keep stamps with their offsets within 64 bits of nanoseconds.
 Fields describe(AlignOptions& o) {
   return {
       {"reference", "stream whose stamps are the take's grid (default: the first)", &o.reference},

@@ -12,7 +12,7 @@ namespace kinalign {
 
 namespace {
 
-/// The step rounded to a whole number, limited so that sums of a few steps fit into 64 bits.
+/// Rounds the step to an integer. The limit prevents overflow when a few steps are added.
 std::int64_t step_of(double ns) {
   constexpr double longest = 1e18;
   return std::llround(std::min(ns, longest));
@@ -25,7 +25,7 @@ Time last_of(const RecordedStream& s) { return take_time(s.clock, s.survey.last)
 
 std::string stream_label(const RecordedStream& s) {
   const auto* imu = std::get_if<ImuInput>(&s.data);
-  // Several nodes in one stream have no single name; the stream's own name is then the label.
+  // A stream of several nodes is labelled with its own name.
   const bool one = imu != nullptr && imu->node_names.size() == 1;
   return one ? s.name + " " + shown(imu->node_names.front()) : s.name;
 }
@@ -43,8 +43,8 @@ Findings all_findings(const RecordedStream& stream) {
 
 const SharedFile* newly_read_file(const Recording& recording, std::size_t stream) {
   const auto file = recording.streams[stream].shared_file;
-  // Only the streams before this one are searched. A file's marks and findings are therefore
-  // reported once, for its first stream.
+  // Only earlier streams are searched, so that the marks and findings of a file are reported once,
+  // for its first stream.
   const auto begin = recording.streams.begin();
   const bool is_known = std::any_of(begin, begin + static_cast<std::ptrdiff_t>(stream),
                                     [&](const RecordedStream& s) { return s.shared_file == file; });
@@ -53,8 +53,8 @@ const SharedFile* newly_read_file(const Recording& recording, std::size_t stream
 
 Result<void> read_side_by_side(const std::vector<ReadNext>& passes,
                                const std::function<Result<void>()>& go) {
-  // The pass that has reached the earliest stamp stands first. A pass that has ended is not put
-  // back. Passes that have read nothing start first, in their order.
+  // The pass with the earliest stamp comes first. A pass that has ended is not inserted again. At
+  // the beginning the passes have the order of their indices.
   std::set<std::pair<std::int64_t, std::size_t>> reached;  // stamp, and index of its pass
   for (std::size_t i = 0; i < passes.size(); ++i) reached.emplace(INT64_MIN, i);
   while (!reached.empty()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recording: the data of several devices about one motion. Each stream can be read from its
-// beginning in blocks, as often as needed, so no stream has to fit into memory.
+// A recording: the data of several devices about one motion. Each stream can be read in blocks from
+// its beginning, as often as needed, so no stream must fit into memory.
 #pragma once
 
 #include "kinalign/clock/time_model.h"
@@ -21,17 +21,18 @@ namespace kinalign {
 
 struct StreamOptions;
 
-/// One pass over a stream. Each call replaces the content of the block by the next one and returns
-/// true; it returns false at the end. Blocks have the reader's size and are never empty.
+/// One pass over a stream. Each call replaces the content of the block by the next rows and returns
+/// true; at the end it returns false. The reader chooses the size of blocks. Blocks are never
+/// empty.
 template <class Frames>
 using Pass = std::function<Result<bool>(Frames&)>;
 
-/// Starts a new pass from the front.
+/// Starts a new pass at the first row.
 template <class Frames>
 using Passes = std::function<Result<Pass<Frames>>()>;
 
-/// The content of a stream by its kind. `passes` may be called as often as needed; each pass begins
-/// at the first row.
+/// The content of a stream of skeletons, points or nodes. `passes` may be called as often as
+/// needed.
 struct ClipInput {
   Skeleton skeleton;
   Passes<ClipFrames> passes;
@@ -50,83 +51,87 @@ struct ImuInput {
 
 /// The facts about an input file that a take stores.
 struct InputFacts {
-  std::string name;    // relative to the manifest's folder; for a file outside it the file's name
-                       // only
+  std::string name;    // relative to the manifest's folder; outside that folder only the file's
+                       // name
   std::string sha256;  // 64 hexadecimal digits
   std::uint64_t bytes = 0;
 
   bool operator==(const InputFacts&) const = default;
 };
 
-/// A mark: a person or a program stated that something happened during the recording.
+/// A mark: a note by a person or a program that something happened during the recording.
 struct TakeMark {
   Time at{};
   std::string kind, text;           // "start", "stop", "t_pose", "text"
-  std::optional<Duration> latency;  // from the mark to its effect
+  std::optional<Duration> latency;  // time from the mark to its effect
   std::string source;               // "keyboard", "call", "trigger"
 
   bool operator==(const TakeMark&) const = default;
 };
 
-/// A file with several streams, such as a recording.
+/// A file that contains several streams, such as a recording.
 struct SharedFile {
   Findings findings;            // about the file as a whole
-  std::vector<TakeMark> marks;  // in the order of their arrival
+  std::vector<TakeMark> marks;  // in the order of arrival
 };
 
-/// One stream of a recording, as the aligner sees it. It holds facts about all samples; the values
-/// come from the passes of `data`.
+/// One stream of a recording, as alignment uses it. It contains facts about all samples. The values
+/// are read by the passes of `data`.
 struct RecordedStream {
-  std::string name;    // the take's group: "mocap", "kinect"; streams of nodes may share one, "imu"
-  std::string format;  // the format read: "bvh", a layout's name; empty: memory
+  std::string name;    // the group in the take: "mocap", "kinect"; streams of nodes may share "imu"
+  std::string format;  // the format: "bvh" or the name of a layout; empty: from memory
   std::variant<ClipInput, PointInput, ImuInput> data;
-  StampSurvey survey;  // on the device's stamps
-  /// Set if the file states a fixed step instead of stamps: frame k is at first + k * step,
+  StampSurvey survey;  // of the device's own stamps
+  /// Set if the file states a fixed step instead of stamps. Frame k is at first + k * step,
   /// rounded.
   std::optional<double> step_ns;
-  /// The device wrote no stamps; they are counted from the first one by a rate or by step_ns.
+  /// The device wrote no stamps. They are computed from the first stamp by the rate or by step_ns.
   bool counted = false;
-  TimeModel clock;  // from the device's stamps to the take's axis
+  TimeModel clock;  // converts the device's stamps to the take's time axis
   std::vector<InputFacts> files;
   Findings findings;  // from the reader
-  /// Findings about values, for a stream that opening does not read through. The optional is empty
-  /// until a pass was read to its end; copies of the stream share it. nullptr: there are none.
+  /// Findings about values, for a stream that is not read to its end when it is opened. The
+  /// optional is empty until one pass reaches the end. Copies of the stream share it. nullptr: the
+  /// stream has no such findings.
   std::shared_ptr<std::optional<Findings>> late_findings;
-  /// For such a stream: the stamps of all rows, in order.
+  /// Set for a stream with late findings: the stamps of all rows, in order.
   std::shared_ptr<const std::vector<Time>> stamps;
   std::optional<std::size_t> shared_file;  // index in Recording::shared_files
 };
 
-/// The stream's first and last stamp on the take's axis.
+/// The stream's first and last stamp on the take's time axis.
 Time first_of(const RecordedStream& stream);
 Time last_of(const RecordedStream& stream);
 
-/// "kinect"; for a single node, whose streams share a name, "imu waist".
+/// Returns "kinect"; for a stream of a single node, "imu waist", since such streams share a name.
 std::string stream_label(const RecordedStream& stream);
 
-/// The usual step between samples, ns: the stated one, else the median. At most 30 years.
+/// Returns the usual step between samples, ns: the stated step, or else the median. At most 30
+/// years.
 std::int64_t usual_step_ns(const RecordedStream& stream, const StreamOptions& options);
 
-/// The reader's findings, then the late ones that are known.
+/// Returns the reader's findings, followed by the late findings that are known.
 Findings all_findings(const RecordedStream& stream);
 
-/// All streams of one motion. The first stream is the reference unless the manifest names another
-/// one. The take's groups are in the order of the streams.
+/// All streams of one motion. The first stream is the reference (its stamps are the grid), unless
+/// the manifest names another stream. The take's groups have the order of the streams.
 struct Recording {
-  std::string subject, action;  // empty if not known
+  std::string subject, action;  // empty: not known
   std::vector<RecordedStream> streams;
   std::vector<SharedFile> shared_files{};
 };
 
-/// The shared file of that stream, if no stream before it uses the same file; else nullptr.
+/// Returns the shared file of that stream if no earlier stream uses the same file; otherwise
+/// nullptr.
 const SharedFile* newly_read_file(const Recording& recording, std::size_t stream);
 
 /// One of several passes that are read in parallel. Reads the next block and returns the stamp of
-/// its last sample on the take's axis, ns; absent after the last block.
+/// its last sample on the take's time axis, ns. Absent after the last block.
 using ReadNext = std::function<Result<std::optional<std::int64_t>>()>;
 
-/// Continues `pass` block by block and counts its rows. `clock` and `rows` must outlive it. The
-/// values are dropped; the pass is read for what its reader finds on the way.
+/// Returns a function that continues `pass` block by block and counts its rows. `clock` and `rows`
+/// must outlive the function. The values are not used; the pass is read for the findings of its
+/// reader.
 template <class Frames>
 ReadNext read_on(Pass<Frames> pass, const TimeModel& clock, std::uint64_t& rows) {
   return [pass = std::move(pass), &clock, &rows]() -> Result<std::optional<std::int64_t>> {
@@ -137,8 +142,8 @@ ReadNext read_on(Pass<Frames> pass, const TimeModel& clock, std::uint64_t& rows)
   };
 }
 
-/// Reads all passes to their ends, always the one that is furthest behind: streams of one recording
-/// then share its chunks. Calls `go` after each block, which may fail.
+/// Reads all passes to their ends, always the pass with the earliest stamp. Streams of one
+/// recording then decode each chunk once. `go` is called after each block; its error ends the call.
 Result<void> read_side_by_side(const std::vector<ReadNext>& passes,
                                const std::function<Result<void>()>& go);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The arrays of a take's rows with their names, which are the same in every file format.
+// The arrays of a take's rows with their names. Every file format uses these names.
 #pragma once
 
 #include "kinalign/take/take.h"
@@ -8,9 +8,9 @@
 
 namespace kinalign {
 
-/// Calls use(name, of) for each array of Rows; of(rows) gives the array. Arrays that a stream
-/// leaves empty are included. Readers, writers and joins of takes all go through this list, so an
-/// array that is added here is in all of them. SampleDistance::over_loss is absent, since no file
+/// Calls use(name, of) for each array of Rows; of(rows) returns the array. Arrays that a stream
+/// leaves empty are included. All code that reads, writes or joins takes uses this list, so a new
+/// array needs to be added only here. SampleDistance::over_loss is not in the list, since no file
 /// stores it.
 template <class Rows, class Use>
 void for_each_column(Use&& use) {

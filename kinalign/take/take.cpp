@@ -6,7 +6,8 @@
 namespace kinalign {
 
 bool has_gravity(const ImuGroup& group, std::size_t node) {
-  // Gravity is the same vector for all nodes, so the difference from the root contains none.
+  // Gravity is the same vector for all nodes, so subtracting the root's acceleration removes
+  // gravity.
   const bool differs = !group.root_node.empty() && group.node_names[node] != group.root_node;
   return group.content.gravity && !differs;
 }
@@ -16,7 +17,7 @@ void append_rows(TakeSlab& all, const TakeSlab& slab) {
     to.insert(to.end(), from.begin(), from.end());
   };
   join(all.stamps, slab.stamps);
-  // The first slab also decides the kinds of the groups.
+  // The first slab sets the kinds of the groups.
   if (all.rows.empty()) {
     all.rows = slab.rows;
     return;
@@ -27,7 +28,7 @@ void append_rows(TakeSlab& all, const TakeSlab& slab) {
           const auto& from = std::get<std::remove_reference_t<decltype(to)>>(slab.rows[g]);
           for_each_column<std::remove_reference_t<decltype(to)>>(
               [&](const char*, auto of) { join(of(to), of(from)); });
-          // for_each_column() has the stored arrays only.
+          // for_each_column() visits only the stored arrays.
           join(to.distance.over_loss, from.distance.over_loss);
         },
         all.rows[g]);

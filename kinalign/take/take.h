@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A take: several streams of one motion on one grid and in one space, with the quality of every
-// sample. It is written and read in slabs of rows. The layout on disk: docs/formats/take.md.
+// A take: several streams of one motion on one grid of stamps and in one space, with the quality of
+// every sample. It is written and read in blocks of rows (slabs). The layout on disk is in
+// docs/formats/take.md.
 #pragma once
 
 #include "kinalign/motion/clip.h"
@@ -17,33 +18,34 @@
 
 namespace kinalign {
 
-/// The distance of a resampled stream's samples from the raw ones. Rows as in the stream.
+/// How far the samples of a resampled stream are from its raw samples. One value for each row.
 struct SampleDistance {
-  std::vector<std::int64_t> nearest_raw_ns;    // limited to 10 s; empty: not resampled
+  // Time to the nearest raw sample, at most 10 s. Empty if the stream was not resampled.
+  std::vector<std::int64_t> nearest_raw_ns;
   std::vector<std::int64_t> time_interval_ns;  // half-width of the stamp's interval; empty: unknown
-  /// Shaped like `valid`; 1: between samples of which some are missing. No file stores it; only the
-  /// report counts it.
+  /// Same shape as `valid`. 1: interpolated over missing samples. No file stores this array; only
+  /// the report counts it.
   std::vector<std::uint8_t> over_loss{};
 };
 
-/// n rows of a skeleton's stream.
+/// n rows of a stream of skeletons with J joints.
 struct ClipRows {
   std::vector<double> positions;        // [n,J,3] m, in the take's space
   std::vector<double> local_positions;  // [n,J,3] m
   std::vector<double> local_rotations;  // [n,J,4]
-  std::vector<std::uint8_t> valid;      // [n]; empty for the reference, whose rows are all valid
+  std::vector<std::uint8_t> valid;      // [n]; empty for the reference: all rows are valid
   SampleDistance distance;              // [n]
 };
 
-/// n rows of a stream of points.
+/// n rows of a stream of points with J joints.
 struct PointRows {
   std::vector<double> positions;    // [n,J,3] m; zeros where not valid
-  std::vector<Tracking> state;      // [n,J] the worse of both neighbouring raw samples
+  std::vector<Tracking> state;      // [n,J] the worse state of the two neighbouring raw samples
   std::vector<std::uint8_t> valid;  // [n,J] 0: no raw sample is near enough
   SampleDistance distance;          // [n]
 };
 
-/// n rows of a stream of nodes.
+/// n rows of a stream of S nodes.
 struct ImuRows {
   std::vector<double> orientation;       // [n,S,4] in the stream's space, see ImuGroup
   std::vector<double> acceleration;      // [n,S,3] m/s2
@@ -52,7 +54,7 @@ struct ImuRows {
   SampleDistance distance;               // [n,S]
 };
 
-/// The constant part of a group, by its kind: the names of the columns of its rows.
+/// The constant part of a group, by its kind: the skeleton or the names of the columns.
 struct ClipGroup {
   Skeleton skeleton;
 };
@@ -62,44 +64,45 @@ struct PointGroup {
 struct ImuGroup {
   std::vector<std::string> node_names;
   ImuContent content;
-  std::string root_node;  // the others are in its space; empty: in the world's
+  std::string root_node;  // the other nodes are in its space; empty: all are in the world's space
 };
 
-/// True if a node's acceleration contains gravity. With a root node only the root's does: the
-/// accelerations of the others are their difference from it.
+/// Returns whether a node's acceleration contains gravity. If there is a root node, the root's
+/// acceleration was subtracted from all others, so only the root's contains gravity.
 bool has_gravity(const ImuGroup& group, std::size_t node);
 
 /// The facts about a stream that are known before its first row.
 struct TakeGroup {
   std::string name;  // "mocap"
   std::variant<ClipGroup, PointGroup, ImuGroup> kind;
-  bool resampled = false;       // it has nearest_raw_ns
-  bool interval_known = false;  // it has time_interval_ns
+  bool resampled = false;       // the group has nearest_raw_ns
+  bool interval_known = false;  // the group has time_interval_ns
   std::vector<InputFacts> files;
-  /// The space of positions: the reference's, or that of a stream that was not moved.
+  /// The space of the positions: "take" for the reference's space, or a space of a stream that was
+  /// not moved.
   std::string space = "take";
 };
 
 /// The facts about a take that are known before its first row. Writers need `frames` in advance,
-/// because they create arrays of their final size.
+/// because they create arrays of the final size.
 struct TakeHeader {
   std::string subject, action;
   std::uint64_t frames = 0;
   std::vector<TakeGroup> groups;
-  Manifest parameters;  // all that the take was made with
+  Manifest parameters;  // all options with which the take was made
 };
 
-/// The rows first, first + 1, ... of all streams, in the order of the header's groups.
+/// The rows first, first + 1, ... of all streams, in the order of the groups.
 struct TakeSlab {
   std::uint64_t first = 0;
   std::vector<Time> stamps;
   std::vector<std::variant<ClipRows, PointRows, ImuRows>> rows;
 };
 
-/// Appends the rows of `slab` to `all`, which has the same groups or is still empty.
+/// Appends the rows of `slab` to `all`. `all` has the same groups or is empty.
 void append_rows(TakeSlab& all, const TakeSlab& slab);
 
-/// A whole take in memory, for tests and small jobs. Programs pass slabs instead.
+/// A whole take in memory, for tests and short recordings. Programs pass slabs instead.
 struct Take {
   TakeHeader header;
   TakeSlab all;
