@@ -13,7 +13,7 @@ namespace kinalign {
 
 namespace {
 
-// Indices in shared_joints.
+// Indices of joints in shared_joints.
 constexpr std::array<std::size_t, 2> wrists{6, 9};
 constexpr std::array<std::size_t, 4> shared_feet{12, 13, 16, 17};
 constexpr OwnRootJoints shared_root{
@@ -23,7 +23,7 @@ constexpr OwnRootJoints shared_root{
 constexpr std::array<std::size_t, shared_joint_count> group_of{0, 0, 0, 0, 0, 1, 1, 0, 1,
                                                                1, 0, 2, 2, 2, 0, 2, 2, 2};
 
-/// The mean distance of both wrists from the truth, over the frames in which they are valid.
+/// Returns the mean position error of both wrists, over the frames in which they are valid.
 std::optional<double> hand_error_cm(const Sequence& sequence, Prediction prediction) {
   Mean out;
   for (std::size_t t = 0; t < sequence.frames(); ++t) {
@@ -38,14 +38,14 @@ std::optional<double> hand_error_cm(const Sequence& sequence, Prediction predict
 
 std::string person_and_action(const Pair& pair) { return pair.subject + "/" + pair.action; }
 
-// A fit of a pose needs enough joints on several limbs; 12 of 18 is also the limit of the measure
-// PA (evaluate/protocol.h).
+// Fitting a pose needs joints on several limbs. The measure PA-MPJPE (evaluate/protocol.h) has the
+// same limit of 12 of 18 joints.
 constexpr std::size_t least_marked_joints = 12;
 
-/// The places of the shared joints among a layout's outputs, in the order of shared_joints.
+/// The indices of the shared joints among the outputs of a layout, in the order of shared_joints.
 using Places = std::array<std::optional<std::size_t>, shared_joint_count>;
 
-/// The shared joints of an array [T,J,3], in their order; zeros for missing ones.
+/// Returns the shared joints of an array [T,J,3], in their order. Missing joints are zero.
 std::vector<double> shared_of(const Places& places, std::size_t joints,
                               const std::vector<float>& positions) {
   std::vector<double> out;
@@ -58,7 +58,7 @@ std::vector<double> shared_of(const Places& places, std::size_t joints,
   return out;
 }
 
-/// The validity of the shared joints; missing joints are not valid.
+/// Returns the validity of the shared joints. Missing joints are invalid.
 std::vector<std::uint8_t> shared_valid(const Places& places, std::size_t joints,
                                        const std::vector<std::uint8_t>& valid) {
   std::vector<std::uint8_t> out;
@@ -68,7 +68,7 @@ std::vector<std::uint8_t> shared_valid(const Places& places, std::size_t joints,
   return out;
 }
 
-/// Some of the shared joints [T,18,3] m, in cm.
+/// Returns some of the shared joints, converted from [T,18,3] m to cm.
 std::vector<double> in_centimetres(const std::vector<std::size_t>& places,
                                    const std::vector<double>& positions) {
   std::vector<double> out;
@@ -81,7 +81,7 @@ std::vector<double> in_centimetres(const std::vector<std::size_t>& places,
   return out;
 }
 
-/// The mean distance of each shared joint from the truth, over its valid frames.
+/// Returns the mean position error of each shared joint over its valid frames.
 std::array<std::optional<double>, shared_joint_count> joint_errors_cm(const Sequence& sequence,
                                                                       Prediction prediction) {
   std::array<Mean, shared_joint_count> sums{};
@@ -98,16 +98,15 @@ std::array<std::optional<double>, shared_joint_count> joint_errors_cm(const Sequ
 
 }  // namespace
 
-/// The true lengths of limbs are medians over all stretches of one person and action. Single
-/// stretches may be too short for a stable median.
+/// The true limb lengths are medians over all parts of takes of one person and action. A single
+/// part may be too short for a reliable median.
 Result<DenoiseMarker> DenoiseMarker::make(const DenoiseLayout& layout,
                                           const std::vector<Pair>& pairs, MarkedIn marked_in) {
   DenoiseMarker out;
   out.marked_in_ = marked_in;
   const auto names = kinect_names(layout.outputs);
   out.places_ = shared_joints_there(names);
-  // Bones are indices among the marked joints only, so the indices are counted without the absent
-  // joints.
+  // Bones are indices among the judged joints, so absent joints are not counted.
   std::array<std::size_t, shared_joint_count> own{};
   for (std::size_t j = 0; j < shared_joint_count; ++j) {
     own[j] = out.there_.size();
@@ -124,7 +123,7 @@ Result<DenoiseMarker> DenoiseMarker::make(const DenoiseLayout& layout,
   }
   out.joints_ = layout.outputs.size();
   out.rate_hz_ = layout.rate_hz;
-  // The arrays must outlive the sequences, which are spans. A deque does not move its elements.
+  // The sequences are views, so the arrays must stay in place. A deque does not move its elements.
   struct Copy {
     std::vector<double> truth;
     std::vector<std::uint8_t> valid;
@@ -148,16 +147,15 @@ DenoiseMarks DenoiseMarker::marks_of(const Pair& pair, const std::vector<float>&
                                      const std::vector<float>& spread) const {
   auto truth = shared_of(places_, joints_, pair.truth);
   auto predicted = shared_of(places_, joints_, answer);
-  // Both skeletons are moved, so an error of horizontal position or heading disappears from all
-  // marks.
+  // Both skeletons are moved, so errors of horizontal position and heading do not count.
   if (marked_in_ == MarkedIn::own_root) {
     truth = own_root(truth, shared_joint_count, shared_root);
     predicted = own_root(predicted, shared_joint_count, shared_root);
   }
   const auto valid = shared_valid(places_, joints_, pair.valid);
   const Sequence sequence{shared_joint_count, rate_hz_, truth, valid};
-  // The protocol takes all 18 shared joints and skips the invalid ones. Table 9 knows no validity,
-  // so it gets the marked joints only.
+  // The protocol uses all 18 shared joints and ignores invalid ones. Table 9 has no validity, so
+  // only the joints that are judged are passed.
   DenoiseMarks out;
   out.protocol = protocol_marks(sequence, predicted, lengths_.at(person_and_action(pair)));
   out.table_nine = table_nine(in_centimetres(there_, truth), in_centimetres(there_, predicted),
@@ -167,7 +165,7 @@ DenoiseMarks DenoiseMarker::marks_of(const Pair& pair, const std::vector<float>&
   if (const auto lag = lag_s(sequence, predicted)) out.lag_ms = 1000.0 * *lag;
   out.amplitude = amplitude_ratio(sequence, predicted, shared_root.root);
   out.feet = feet_marks(sequence, predicted, shared_feet).value_or(FeetMarks{});
-  // A stated spread is one standard deviation per axis. `radius_90` makes of it the radius that
+  // A stated spread is one standard deviation per axis. `radius_90` converts it to the radius that
   // should contain 90 % of the errors.
   for (std::size_t i = 0; i < valid.size() && !spread.empty(); ++i) {
     if (valid[i] == 0) continue;

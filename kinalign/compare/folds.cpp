@@ -10,18 +10,18 @@ namespace kinalign {
 
 namespace {
 
-// UI-PRMD's ten actions give two tested actions in each fold.
+// UI-PRMD has ten actions, so each fold tests two.
 constexpr std::size_t action_folds = 5;
 
-/// The values of one member over all takes, sorted, each once. The order of folds therefore does
-/// not depend on the order of takes.
+/// Returns the different values of one member, sorted. The order of folds therefore does not depend
+/// on the order of takes.
 std::set<std::string> all_of(const std::vector<FoldTake>& takes, std::string FoldTake::*member) {
   std::set<std::string> out;
   for (const FoldTake& take : takes) out.insert(take.*member);
   return out;
 }
 
-/// Every take that is not tested is learnt from.
+/// Makes a fold. Every take that is not tested is used for training.
 Fold fold_where(std::string name, const std::vector<FoldTake>& takes,
                 const std::function<bool(const FoldTake&)>& is_tested) {
   Fold out{std::move(name), {}, {}};
@@ -37,7 +37,7 @@ int run_of(const std::string& take) {
   const std::size_t at = take.find("_run-");
   int run = 0;
   if (at != std::string::npos) {
-    // A name without a number leaves 0, which is no run of a take.
+    // If the name has no number, the run stays 0.
     std::from_chars(take.data() + at + 5, take.data() + take.size(), run);
   }
   return run;
@@ -59,8 +59,8 @@ Result<std::vector<Fold>> folds_of(const std::string& kind, const std::vector<Fo
     for (std::size_t k = 0; k < action_folds; ++k) {
       out.push_back(
           fold_where("actions " + std::to_string(k + 1), takes, [&](const FoldTake& take) {
-            // The index in the sorted names decides, so a fold takes actions from the whole list
-            // and not five neighbours.
+            // The fold tests every fifth action in the order of names, so that similar neighbours
+            // are in different folds.
             const auto at =
                 std::find(actions.begin(), actions.end(), take.action) - actions.begin();
             return static_cast<std::size_t>(at) % action_folds == k;
@@ -76,7 +76,7 @@ Result<std::vector<Fold>> folds_of(const std::string& kind, const std::vector<Fo
   } else {
     return Failure(Error{"", 0, "folds of people, runs or actions, or a split", kind});
   }
-  // An empty side would give marks of nothing, so it is refused before any method is fitted.
+  // A fold without training or test takes is refused before any method is fitted.
   for (const Fold& fold : out) {
     if (!fold.learnt.empty() && !fold.tested.empty()) continue;
     return Failure(Error{"", 0, "takes for training and for the test in every fold",

@@ -15,26 +15,27 @@ namespace kinalign {
 
 namespace {
 
-// Four frames before and four after the middle one: the nine frames of a window.
+// Number of frames before and after the middle frame; the window has nine frames.
 constexpr std::size_t half_window = 4;
-// Features are divided by this length, so that they are about 1 and the penalty has a fixed
-// meaning.
+// Features are divided by this length, so their size is about 1 for any data and the penalty has
+// the same effect.
 constexpr double feature_scale = 0.05;  // m
 
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 Eigen::Index whole(std::size_t value) { return static_cast<Eigen::Index>(value); }
 
-/// The body's heading in each frame, from the joints as they are.
+/// Returns the heading of the body in each frame, from the uncleaned joints.
 std::vector<BodyFrame> headings(const DenoiseLayout& layout, const JointFrames& body) {
   return body_frames(*body_joints(layout.inputs), body);
 }
 
-/// The positions of nine frames minus the root of the middle one, in its heading: [9 * 3J] m.
+/// Writes the positions of nine frames relative to the root of the middle frame, in its heading: [9
+/// * 3J] m.
 void put_features(const JointFrames& body, const std::vector<BodyFrame>& frames, std::size_t t,
                   double* out) {
   const std::size_t last = body.frames() - 1;
-  // At the ends of a take the first or last frame is repeated.
+  // Before the beginning and after the end of a take, its first or last frame is repeated.
   for (std::size_t k = 0; k <= 2 * half_window; ++k) {
     const std::size_t u = std::min(t + k < half_window ? 0 : t + k - half_window, last);
     for (std::size_t j = 0; j < body.joints; ++j) {
@@ -46,32 +47,32 @@ void put_features(const JointFrames& body, const std::vector<BodyFrame>& frames,
   }
 }
 
-/// Truth minus base in the body's heading, m.
+/// Returns truth minus base in the axes of the body's heading, m.
 std::array<float, 3> offset_of(const BodyFrame& frame, const float* truth, const float* base) {
   const std::array<float, 3> moved{truth[0] - base[0], truth[1] - base[1], truth[2] - base[2]};
   return frame.turned(moved.data());
 }
 
-/// Moves a joint by an offset that is given in the body's heading.
+/// Moves a joint by an offset in the axes of the body's heading.
 void add_turned(const BodyFrame& frame, const float* offset, float* at) {
   const auto turned = frame.turned_back(offset);
   for (std::size_t k = 0; k < 3; ++k) at[k] += turned[k];
 }
 
-/// A body without gaps, its headings, and the input joints that stand for the outputs.
+/// A body without gaps, its headings, and the input joints that correspond to the outputs.
 struct Prepared {
   JointFrames body;
   std::vector<BodyFrame> frames;
   std::vector<float> base;  // [T,Jout,3] m
 
   Prepared(const DenoiseLayout& layout, JointFrames seen) : body(std::move(seen)) {
-    // Gaps are filled as the layout does for a network, without later frames if the layout is
-    // causal.
+    // Gaps are filled as the layout does for a network. If the layout is causal, no later frames
+    // are used.
     fill_missing(body, layout.smoothing.causal);
     frames = headings(layout, body);
     for (std::size_t t = 0; t < body.frames(); ++t) {
       for (const int joint : layout.bases) {
-        // A negative base means that no input joint stands for this output: the root is used.
+        // If no input joint corresponds to the output, `joint` is negative and the root is used.
         const float* at =
             joint < 0 ? frames[t].root.data()
                       : &body.positions[(t * body.joints + static_cast<std::size_t>(joint)) * 3];
@@ -87,7 +88,7 @@ std::vector<float> base_joints(const DenoiseLayout& layout, JointFrames body) {
   return Prepared(layout, std::move(body)).base;
 }
 
-/// The mean offset of each joint over all valid cells.
+/// Computes the mean offset of each joint over all valid samples.
 MeanOffset::MeanOffset(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt) {
   const std::size_t joints = layout.outputs.size();
   std::vector<double> sums(3 * joints, 0.0), counts(joints, 0.0);
@@ -101,7 +102,7 @@ MeanOffset::MeanOffset(const DenoiseLayout& layout, const std::vector<const Pair
       counts[i % joints] += 1.0;
     }
   }
-  // A joint that is never valid keeps the offset 0.
+  // A joint that is never valid gets the offset 0.
   for (std::size_t c = 0; c < sums.size(); ++c) {
     mean_.push_back(static_cast<float>(sums[c] / std::max(counts[c / 3], 1.0)));
   }
@@ -124,7 +125,7 @@ struct Ridge::Fit {
 
 namespace {
 
-/// The sums of the normal equations over frames in which all joints are valid.
+/// The sums of the normal equations, over frames in which all joints are valid.
 struct Normal {
   Matrix gram, moment;
 
@@ -137,8 +138,8 @@ struct Normal {
     moment.noalias() += features.transpose() * targets;
   }
 
-  // Solves (G + penalty I) w = M by Cholesky. The last feature is the constant 1; it gets no
-  // penalty, so the mean offset is not pulled to 0.
+  // Solves (G + penalty I) w = M by Cholesky. The last feature is the constant 1. It has no
+  // penalty, so the mean offset is not reduced.
   Matrix solved(double penalty) const {
     Matrix ridge = gram;
     for (Eigen::Index i = 0; i + 1 < ridge.rows(); ++i) ridge(i, i) += penalty;
@@ -146,14 +147,14 @@ struct Normal {
   }
 };
 
-/// The features of the frames in which all joints are valid, minus `mean` and scaled, followed by a
-/// 1; and the targets, m.
+/// Computes the features of the frames in which all joints are valid: minus `mean`, scaled,
+/// followed by a 1. Also computes the targets, m.
 void frames_of(const DenoiseLayout& layout, const Pair& pair, const Eigen::RowVectorXd& mean,
                Matrix& features, Matrix& targets) {
   const Prepared seen(layout, pair.input);
   const std::vector<BodyFrame>& frames = seen.frames;
   const std::size_t joints = layout.outputs.size();
-  // A frame with an invalid joint has no complete target and is left out. All outputs then share
+  // A frame with an invalid joint is omitted. All outputs then have the same frames and need only
   // one Gram matrix.
   std::vector<std::size_t> rows;
   for (std::size_t t = 0; t < frames.size(); ++t) {
@@ -181,8 +182,8 @@ void frames_of(const DenoiseLayout& layout, const Pair& pair, const Eigen::RowVe
 
 }  // namespace
 
-/// Two passes: the first finds the mean of the features, the second sums up the normal equations.
-/// Only sums are kept, so memory does not grow with the number of takes.
+/// Makes two passes: the first computes the mean of the features, the second sums the normal
+/// equations. Only sums are stored, so memory does not grow with the number of takes.
 Ridge::Ridge(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt, double penalty)
     : fit_(std::make_unique<Fit>()) {
   const auto width = whole((2 * half_window + 1) * 3 * layout.inputs.size());
@@ -192,7 +193,7 @@ Ridge::Ridge(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt
   double count = 0.0;
   for (const Pair* pair : learnt) {
     frames_of(layout, *pair, zero, features, targets);
-    // With the mean 0 the features are only scaled. Scaling back gives their sum in metres.
+    // The mean is 0 here, so the features are only scaled. Multiplying gives their sum in metres.
     if (features.rows() == 0) continue;
     sum += features.leftCols(width).colwise().sum() * feature_scale;
     count += static_cast<double>(features.rows());
@@ -203,7 +204,7 @@ Ridge::Ridge(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt
     frames_of(layout, *pair, fit_->mean, features, targets);
     if (features.rows() > 0) normal.add(features, targets);
   }
-  // Without a complete frame the weights are 0, and the answer is the input itself.
+  // Without a complete frame, the weights are 0 and the result equals the input.
   fit_->weights = normal.gram.size() == 0 ? Matrix(Matrix::Zero(width + 1, whole(layout.answers())))
                                           : normal.solved(penalty);
 }
@@ -234,13 +235,14 @@ std::vector<float> Ridge::clean(const DenoiseLayout& layout, const JointFrames& 
 
 namespace {
 
-// Groups limit the number of fits: at most five, however many people there are.
+// Groups limit the number of fits to five for any number of people.
 constexpr std::size_t most_groups = 5;
 constexpr double ratio_of_one_person = 1.5;
-/// Chosen from 24 simulated people, of whom a share of 0.95 held 96 %, and UI-PRMD's seven.
+/// Chosen from UI-PRMD's seven people and 24 simulated people, for whom a share of 0.95 contained
+/// 96 %.
 constexpr double most_share = 0.93;
 
-/// Appends the distances of valid joints from the truth, m.
+/// Appends the position errors of valid joints, m.
 void put_errors(const DenoiseLayout& layout, const Ridge& ridge, const Pair& pair,
                 std::vector<double>& out) {
   const std::vector<float> answer = ridge.clean(layout, pair.input);
@@ -252,7 +254,7 @@ void put_errors(const DenoiseLayout& layout, const Ridge& ridge, const Pair& pai
   }
 }
 
-/// The quantile of n people's errors that contains 90 % of the errors of another person.
+/// Returns the quantile of n people's errors that contains 90 % of the errors of another person.
 double share_of_people(std::size_t people) {
   const auto n = static_cast<double>(people);
   return std::min(most_share, 0.9 * (n + 1.0) / n);
@@ -263,7 +265,7 @@ double share_of_people(std::size_t people) {
 double unseen_ratio(const DenoiseLayout& layout, const std::vector<Pair>& pairs) {
   std::map<std::string, std::size_t> group_of;
   for (const Pair& pair : pairs) group_of.try_emplace(pair.subject, 0);
-  // People are dealt to the groups in the order of their names, so the result does not depend on
+  // People are assigned to the groups in the order of their names, so the result does not depend on
   // the order of pairs.
   std::size_t next = 0;
   for (auto& [subject, group] : group_of) group = next++ % most_groups;
@@ -280,7 +282,7 @@ double unseen_ratio(const DenoiseLayout& layout, const std::vector<Pair>& pairs)
       put_errors(layout, ridge, pair, group_of.at(pair.subject) == g ? unseen : seen);
     }
   }
-  // The ratio is never below 1: unseen people are not expected to be better than those of the fit.
+  // The ratio is at least 1, because methods are not expected to be better for unseen people.
   if (seen.empty() || unseen.empty()) return 1.0;
   const double least = quantile(std::move(seen), 0.9);
   if (least <= 0.0) return 1.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Methods that are fitted in closed form: the mean offset of each joint, and ridge regression over
-// nine frames. Both follow UI-PRMD's protocol.
+// Two methods that are computed directly, without training a network: the mean offset of each
+// joint, and ridge regression over nine frames. Both follow UI-PRMD's protocol.
 #pragma once
 
 #include "kinalign/models/denoise_features.h"
@@ -12,21 +12,21 @@
 
 namespace kinalign {
 
-/// Each output joint is its input joint moved by a constant vector in the body's heading. The
-/// simplest method: it removes the difference between the joints' definitions and nothing else.
+/// Moves each joint by a constant vector in the axes of the body's heading. This simplest method
+/// only removes the difference between the definitions of the joints.
 class MeanOffset {
  public:
   MeanOffset(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt);
-  /// The cleaned joints [T,Jout,3] m.
+  /// Returns the cleaned joints [T,Jout,3] m.
   std::vector<float> clean(const DenoiseLayout& layout, const JointFrames& body) const;
 
  private:
   std::vector<float> mean_;  // [Jout,3] m
 };
 
-/// The offset is a linear function of the input's joints in nine frames, in the heading of the
-/// middle frame. `penalty` keeps the weights small; features are in units of 5 cm. Eigen's dense
-/// solvers stay in the .cpp file, hence `Fit`.
+/// Predicts the offset of each joint as a linear function of the input joints in nine frames, in
+/// the heading of the middle frame. `penalty` keeps the weights small; features are in units of 5
+/// cm. `Fit` is defined in the .cpp file, so that this header does not include Eigen's solvers.
 class Ridge {
  public:
   Ridge(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt,
@@ -43,14 +43,17 @@ class Ridge {
   std::unique_ptr<Fit> fit_;
 };
 
-/// The ratio of ridge's errors on unseen people to those on the people it was fitted to. People are
-/// left out one by one, or in at most five groups. The ratio is a quantile of the first errors over
-/// the 90 % quantile of the second. Few people do not show how much people differ: for n of them
-/// the first quantile is 0.9 (n + 1) / n, at most 0.93 (Lee, Barber, Willett, «Distribution-free
-/// inference with hierarchical data», 2023). 1.5 for a single person.
+/// Returns how much larger ridge regression's errors are for unseen people than for people of the
+/// training. People are left out one by one, or in at most five groups. The result is a quantile of
+/// the errors for unseen people, divided by the 90 % quantile for the others.
+///
+/// A few people do not show how much people differ. For n people the first quantile is therefore
+/// 0.9 (n + 1) / n, at most 0.93 (Lee, Barber, Willett, «Distribution-free inference with
+/// hierarchical data», 2023). The result for a single person is 1.5.
 double unseen_ratio(const DenoiseLayout& layout, const std::vector<Pair>& pairs);
 
-/// The input joints that stand for the outputs, [T,Jout,3] m, with missing ones filled.
+/// Returns the input joints that correspond to the outputs, [T,Jout,3] m; missing positions are
+/// filled.
 std::vector<float> base_joints(const DenoiseLayout& layout, JointFrames body);
 
 }  // namespace kinalign

@@ -9,16 +9,17 @@ namespace kinalign {
 
 namespace {
 
-// One person gives no paired test.
+// A paired test needs at least two people.
 constexpr std::size_t least_common_people = 2;
 
-/// The paired test over the people that have the mark of both methods. Absent with too few of them.
+/// Tests two methods over the people for whom both have the measure. Absent if there are too few
+/// people.
 std::optional<PairedTest> test_of(const MethodMarks& first, const MethodMarks& second,
                                   const std::string& mark) {
   const auto ours = first.marks.find(mark), theirs = second.marks.find(mark);
   if (ours == first.marks.end() || theirs == second.marks.end()) return std::nullopt;
   std::vector<double> differences;
-  // People are matched by name; a person that only one method has is left out.
+  // People are matched by name. A person whom only one method has is ignored.
   Mean mean;
   for (const auto& [person, value] : ours->second) {
     const auto other = theirs->second.find(person);
@@ -52,8 +53,8 @@ std::vector<PairedTest> paired_tests(const std::vector<MethodMarks>& methods,
                                      const std::string& mark) {
   std::vector<PairedTest> out;
   std::vector<double> p;
-  // Two methods of different variants differ in two things at once, so their difference would not
-  // say why.
+  // If method and variant both differ, the cause of a difference is unknown, so the pair is
+  // omitted.
   for (std::size_t a = 0; a < methods.size(); ++a) {
     for (std::size_t b = a + 1; b < methods.size(); ++b) {
       const bool comparable =
@@ -66,7 +67,7 @@ std::vector<PairedTest> paired_tests(const std::vector<MethodMarks>& methods,
       out.push_back(*test);
     }
   }
-  // Holm's correction needs all tests of the mark, so it comes after the loop.
+  // Holm's correction needs all tests of the measure, so it follows the loop.
   const std::vector<double> corrected = holm(p);
   for (std::size_t i = 0; i < out.size(); ++i) out[i].corrected = corrected[i];
   return out;

@@ -10,11 +10,11 @@ namespace kinalign {
 
 using Json = nlohmann::ordered_json;
 
-// nlohmann's operator[] may be used only if the object has the key, so each function asks first.
+// nlohmann's operator[] requires that the key exists, so each function checks this first.
 std::string text_at(const Json& json, const char* key) {
   if (!json.is_object() || !json.contains(key) || !json[key].is_string()) return "";
   std::string text = json[key].get<std::string>();
-  // These texts are printed on terminals, which obey control characters.
+  // These texts are printed on terminals, which would interpret control characters.
   std::replace_if(
       text.begin(), text.end(),
       [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
@@ -23,13 +23,13 @@ std::string text_at(const Json& json, const char* key) {
 
 double number_at(const Json& json, const char* key) {
   if (!json.is_object() || !json.contains(key) || !json[key].is_number()) return 0.0;
-  // JSON has no infinity, but 1e999 is read as one.
+  // JSON has no infinity, but 1e999 is read as infinity.
   const auto number = json[key].get<double>();
   return std::isfinite(number) ? number : 0.0;
 }
 
 std::uint64_t count_at(const Json& json, const char* key) {
-  // A negative number is an integer, but not an unsigned one.
+  // A negative number is an integer, but not an unsigned integer.
   if (!json.is_object() || !json.contains(key) || !json[key].is_number_unsigned()) return 0;
   return json[key].get<std::uint64_t>();
 }
@@ -41,7 +41,7 @@ std::int64_t whole_at(const Json& json, const char* key, std::int64_t furthest) 
 }
 
 const Json& list_at(const Json& json, const char* key) {
-  // The result is a reference, so the empty list must outlive the call.
+  // The function returns a reference, so the empty list must outlive the call.
   static const Json none = Json::array();
   if (!json.is_object() || !json.contains(key) || !json[key].is_array()) return none;
   return json[key];

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Members of JSON that may come from another program: a member that is missing or of another type
-// reads as a default.
-// A reader that must refuse such members does not use these functions.
+// Reads members of JSON that may come from another program. If a member is missing or has another
+// type, the result is a default. Code that must refuse such members does not use these functions.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,15 +10,15 @@
 
 namespace kinalign {
 
-/// The text with control characters replaced by '?'; empty if there is none.
+/// Returns the text with control characters replaced by '?'; empty if the member is no text.
 std::string text_at(const nlohmann::ordered_json& json, const char* key);
-/// 0 if there is no number.
+/// Returns the number; 0 if the member is no number.
 double number_at(const nlohmann::ordered_json& json, const char* key);
-/// 0 if there is no number, or a negative one.
+/// Returns the count; 0 if the member is no number or negative.
 std::uint64_t count_at(const nlohmann::ordered_json& json, const char* key);
-/// 0 if there is no number, or one whose absolute value is above `furthest`.
+/// Returns the integer; 0 if the member is no integer or its absolute value exceeds `furthest`.
 std::int64_t whole_at(const nlohmann::ordered_json& json, const char* key, std::int64_t furthest);
-/// An empty array if there is none.
+/// Returns the array; an empty array if the member is no array.
 const nlohmann::ordered_json& list_at(const nlohmann::ordered_json& json, const char* key);
 
 }  // namespace kinalign

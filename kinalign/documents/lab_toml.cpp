@@ -10,12 +10,12 @@ namespace kinalign {
 
 namespace {
 
-// A limit on the work for a file from elsewhere; the checks compare every pair of devices.
+// Limits the work for a file from another person, because every pair of devices is compared.
 constexpr std::size_t most_devices = 64;
 
-/// Paths become relative to `in`, the folder of the file.
+/// Reads one device. Relative paths become relative to `in`, the folder of the file.
 Result<DeviceOptions> read_device(const Value& device, const std::string& in) {
-  // A frequent mistake: [device] with the keys of a device, but without a name.
+  // Users often write [device] with the keys of a device but without its name.
   if (!device.is_table()) {
     return at(device, "[device.NAME], a table of its own for each",
               device.key + ", " + shown(device));
@@ -23,7 +23,7 @@ Result<DeviceOptions> read_device(const Value& device, const std::string& in) {
   DeviceOptions out;
   out.name = device.key;
   KA_TRY(read_options(device, describe(out)));
-  // The program may be started in any folder, so paths in a file count from the file.
+  // Paths are relative to the file, because the program may be started in any folder.
   for (std::string* path : {&out.skeleton, &out.lab_key}) {
     if (!path->empty() && !path->starts_with('/')) path->insert(0, in);
   }
@@ -39,7 +39,7 @@ Result<std::vector<DeviceOptions>> read_devices(std::string_view toml, std::stri
     if (devices == nullptr) return {};
     for (const Value& device : KA_TRY(entries_of(*devices))) {
       lab.devices.push_back(KA_TRY(read_device(device, std::string(folder(name)))));
-      // All devices so far are validated, so a fault is in this line's device.
+      // All earlier devices were valid, so a fault belongs to the device of this line.
       const auto good = validate(lab);
       if (!good) return at(device, good.error());
       if (lab.devices.size() > most_devices) {

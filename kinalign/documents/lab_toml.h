@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// lab.toml: the devices of a lab, docs/formats/lab_toml.md. Its other tables are settings of verbs,
-// which the program reads.
+// Reads the devices in lab.toml (docs/formats/lab_toml.md). The other tables of lab.toml contain
+// options of commands, which apps/kinalign reads.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -11,10 +11,9 @@
 
 namespace kinalign {
 
-/// The devices of the tables [device.NAME], in the order of the file; empty if the text has none.
-/// `name` appears in messages, and relative paths become relative to its folder.
-/// An unknown key, a device without a meaning, or a port that two devices share is refused with its
-/// line.
+/// Returns the devices of the tables [device.NAME], in the order of the file; empty if there are
+/// none. `name` appears in messages, and relative paths become relative to its folder. Fails with
+/// the line if a key is unknown, a device is not possible, or two devices use the same port.
 Result<std::vector<DeviceOptions>> read_devices(std::string_view toml, std::string_view name);
 
 }  // namespace kinalign

@@ -10,8 +10,8 @@ namespace kinalign {
 
 namespace {
 
-/// Refuses a lab.toml, which is easily confused with a manifest: both name streams.
-/// No manifest has a table [device].
+/// Refuses a lab.toml that was given as a manifest by mistake. Both files name streams, but only
+/// lab.toml has a table [device].
 Result<void> check_purpose(const Value& top) {
   const Value* devices = top.find({"device"});
   if (devices == nullptr) return {};
@@ -24,16 +24,16 @@ Result<void> read_files(const Value& value, std::vector<StreamFile>& out) {
   if (value.kind != Value::Kind::list && !value.is_table()) {
     return wrong(value, "a list of files or a table of nodes' files");
   }
-  // In a table each file belongs to the node that its key names. A file of a list names its nodes
-  // itself.
+  // In a table, the key names the node of each file. In a list, the files themselves name their
+  // nodes.
   for (const Value& one : value.items) {
     out.push_back({KA_TRY(text_of(one)), value.is_table() ? one.key : ""});
   }
   return {};
 }
 
-/// A stated key must have an effect, even if its value is the default. The lines also serve
-/// messages.
+/// Stores the line of each key, for messages. A key must have an effect even if its value is the
+/// default, so the keys are needed too.
 void keep_lines(const Value& table, KeyLines& lines) {
   for (const Value& entry : table.items) lines[entry.key] = entry.line;
 }
@@ -41,7 +41,7 @@ void keep_lines(const Value& table, KeyLines& lines) {
 Result<void> read_stream(const Value& stream, Manifest& manifest) {
   StreamOptions& out = manifest.streams.emplace_back();
   out.name = stream.key;
-  // `file` is the short form of `files` with one entry.
+  // `file` is a short form of `files` with one entry.
   const auto read_file = [&](const Value& value) -> Result<void> {
     out.files.push_back({KA_TRY(text_of(value)), ""});
     return {};
@@ -50,7 +50,7 @@ Result<void> read_stream(const Value& stream, Manifest& manifest) {
       stream, describe(out),
       {{"file", read_file}, {"files", [&](const Value& v) { return read_files(v, out.files); }}}));
   keep_lines(stream, out.lines);
-  // A stream without a file is refused here, at the line of its table.
+  // A stream without a file is refused with the line of its table.
   if (!out.files.empty()) return {};
   return at(stream, "file or files in [" + stream.path + "]", "none");
 }
@@ -62,7 +62,7 @@ Result<void> read_streams(const Value& streams, Manifest& out) {
 
 Result<void> read_spaces(const Value& spaces, Manifest& out) {
   for (const Value& space : KA_TRY(entries_of(spaces))) {
-    // A space has the name of the stream that it moves.
+    // The key of a space is the name of the stream that is moved.
     SpaceOptions& options = out.spaces[space.key];
     KA_TRY(read_options(space, describe(options)));
     keep_lines(space, options.lines);
@@ -70,13 +70,13 @@ Result<void> read_spaces(const Value& spaces, Manifest& out) {
   return {};
 }
 
-/// Fails if the file refers to a stream that does not exist.
+/// Fails if the manifest refers to a stream that does not exist.
 Result<void> check_names(const Value& top, const Manifest& manifest) {
   std::vector<std::string> known;
   for (const StreamOptions& stream : manifest.streams) known.push_back(stream.name);
-  // `where` is the value in the text, whose line an error needs.
+  // `where`: the value in the file, whose line the error states.
   const auto check = [&](const std::string& stream, const Value* where) -> Result<void> {
-    if (stream.empty() || where == nullptr) return {};  // not stated in this file
+    if (stream.empty() || where == nullptr) return {};  // not in this file
     if (std::find(known.begin(), known.end(), stream) != known.end()) return {};
     return at(*where, unknown_name(stream, "a stream of this file", known));
   };
@@ -88,7 +88,7 @@ Result<void> check_names(const Value& top, const Manifest& manifest) {
   return {};
 }
 
-/// The tables of one stream.
+/// Returns the tables of one stream as text.
 std::string stream_text(const StreamOptions& stream) {
   std::string text = toml_head("stream", stream.name);
   if (!stream.files.empty()) text += files_toml(stream.files) + "\n";
@@ -100,11 +100,10 @@ std::string stream_text(const StreamOptions& stream) {
 Result<Manifest> read_manifest(std::string_view toml, std::string_view name,
                                const AlignOptions& unsaid) {
   Manifest out;
-  // Options that [align] does not state keep these values.
+  // Options that [align] does not set keep these values.
   out.align = unsaid;
   KA_TRY(read_toml(toml, name, [&](const Value& top) -> Result<void> {
-    // Checked first. Otherwise the unknown keys of a lab.toml would be reported instead of the
-    // mistake.
+    // A lab.toml is recognised first. Otherwise its keys would be reported as unknown.
     KA_TRY(check_purpose(top));
     KA_TRY(read_options(
         top, describe(out),
@@ -117,9 +116,9 @@ Result<Manifest> read_manifest(std::string_view toml, std::string_view name,
 }
 
 std::string files_toml(const std::vector<StreamFile>& files) {
-  // Either all files of a stream have a node, or none has.
+  // Either all files of a stream have a node, or none has a node.
   if (!files.empty() && !files.front().node.empty()) {
-    // A toml_table() is sorted by key, so it can't be used here.
+    // toml_table() sorts by key, so it can't keep the order of the files.
     std::string table;  // in the order of the files
     for (const StreamFile& file : files) {
       table += (table.empty() ? "" : ", ") + toml_key(file.node) + " = " + toml_string(file.path);
@@ -139,7 +138,7 @@ std::string select_toml(const std::map<std::string, std::string>& select) {
 
 std::string manifest_toml(const Manifest& manifest) {
   std::string text = toml_options(manifest);
-  // A table without stated options is left out.
+  // A table without options is omitted.
   if (const std::string align = toml_options(manifest.align); !align.empty()) {
     text += "\n[align]\n" + align;
   }

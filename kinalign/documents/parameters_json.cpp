@@ -19,8 +19,8 @@ constexpr const char* schema = "kinalign.parameters/1";
 
 // ---- to JSON
 
-/// Called with the address of each option's value. An absent optional value becomes null, so its
-/// key is written, too.
+/// Converts the value at an option's address to JSON. An absent optional value becomes null, so
+/// that its key is written too.
 struct ToJson {
   template <class Value>
   Json operator()(const Value* value) const {
@@ -33,14 +33,14 @@ struct ToJson {
 };
 
 Json fields_to_json(const Fields& fields) {
-  // describe() gives the options in a fixed order, which is the order in the text.
+  // describe() returns the options in a fixed order, which becomes the order in the JSON.
   Json out = Json::object();
   for (const Field& field : fields) out[field.name] = std::visit(ToJson{}, field.value);
   return out;
 }
 
-/// A stream's name and files, then its options.
-/// The copy is needed because describe() takes the addresses of values that may be changed.
+/// Converts a stream: its name and files, then its options. The stream is copied, because
+/// describe() needs addresses of values that it may change.
 Json stream_to_json(StreamOptions stream) {
   Json out = {{"name", stream.name}, {"files", Json::array()}};
   for (const StreamFile& file : stream.files) {
@@ -53,10 +53,10 @@ Json stream_to_json(StreamOptions stream) {
 // ---- from JSON
 
 Value value_of(const Json& json, std::string key, std::string path) {
-  // line stays 0: JSON values are named by their path, such as streams[0].gap_ms.
+  // `line` stays 0, because JSON values are named by their path, such as streams[0].gap_ms.
   using Kind = Value::Kind;
   Value out{Kind::null, {}, {}, std::move(key), std::move(path)};
-  // An integer above INT64_MAX is read as a double, so it is no whole number for an option.
+  // nlohmann may store an integer above INT64_MAX, which is too large for an option's integer.
   const bool whole = json.is_number_integer() &&
                      (!json.is_number_unsigned() || json.get<std::uint64_t>() <= INT64_MAX);
   if (json.is_boolean()) out.set(Kind::truth, json.get<bool>());
@@ -66,7 +66,7 @@ Value value_of(const Json& json, std::string key, std::string path) {
   if (json.is_array()) {
     out.kind = Kind::list;
     for (const Json& one : json) {
-      // The entries of a list have no key.
+      // Elements of a list have no key.
       out.items.push_back(value_of(one, "", fmt::format("{}[{}]", out.path, out.items.size())));
     }
   }
@@ -87,13 +87,14 @@ Result<void> streams_from_json(const Value& streams, Manifest& out) {
       if (files.kind != Value::Kind::list) return wrong(files, "a list");
       for (const Value& each : files.items) {
         StreamFile& file = stream.files.emplace_back();
-        // The path is checked at the end, when all of the text is known to be right.
+        // The path is checked later, when the rest of the text is known to be correct.
         KA_TRY(read_options(each, {{"path", "", &file.path}, {"node", "", &file.node}}));
       }
       return {};
     };
     Fields fields = describe(stream);
-    // In TOML the name is that of the table; JSON has a list of streams, so it is a key.
+    // In TOML the name is the key of the table. In JSON the streams are a list, so the name is a
+    // member.
     fields.push_back({"name", "", &stream.name});
     KA_TRY(read_options(one, fields, {{"files", read_files}}));
   }
@@ -114,7 +115,7 @@ Result<Manifest> manifest_from(const Value& top) {
     return wrong(value, std::string("\"") + schema + "\"");
   };
   if (!top.is_table()) return refuse("parameters as a table", shown(top));
-  // A text without a schema could be of any version, and its keys could mean something else.
+  // Without a schema the version is unknown, and the keys could have other meanings.
   if (top.find({"schema"}) == nullptr) {
     return refuse(std::string("schema ") + schema, "none");
   }
@@ -127,9 +128,9 @@ Result<Manifest> manifest_from(const Value& top) {
   return out;
 }
 
-/// A take from another person must not make the program read files elsewhere.
+/// A take from another person must not make the program read files outside its folder.
 Result<void> check_path(const std::string& path) {
-  // A path that points nowhere else is remembered unchanged.
+  // A path inside the folder is not changed by remembered_path().
   if (remembered_path(path) == path) return {};
   return refuse("a path below the folder of the inputs", "'" + shown(path) + "'");
 }
@@ -145,12 +146,13 @@ std::string parameters_json(const Manifest& manifest) {
   for (const StreamOptions& stream : copy.streams) out["streams"].push_back(stream_to_json(stream));
   out["spaces"] = Json::object();
   for (auto& [name, space] : copy.spaces) out["spaces"][name] = fields_to_json(describe(space));
-  // Names from files may contain bytes that are not UTF-8; each becomes U+FFFD.
+  // Bytes of file names that are not UTF-8 become U+FFFD.
   return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Result<Manifest> parse_parameters_json(std::string_view json) {
-  // The parameters of this program are nested only a few levels deep. value_of() recurses.
+  // Takes of this program are nested a few levels deep. The limit protects value_of(), which is
+  // recursive.
   constexpr int deepest = 32;
   bool deeper = false;
   const auto keep = [&deeper](int depth, Json::parse_event_t, const Json&) {
@@ -176,7 +178,7 @@ Manifest without_folders(Manifest manifest) {
     for (const StreamFile& file : stream.files) paths.push_back(file.path);
   }
   const auto names = remembered_paths(paths);
-  // Files are named together: two files with one name get as many folders as they need to differ.
+  // All paths are processed together, because two files with the same name get different folders.
   for (StreamOptions& stream : manifest.streams) {
     stream.layout = remembered_path(stream.layout);
     for (StreamFile& file : stream.files) file.path = names.at(file.path);

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The facts about a stream's stamps.
+/// Converts the facts about a stream's stamps to JSON.
 Json survey_json(const StampSurvey& survey) {
   return {{"samples", survey.samples},
           {"duplicates", survey.duplicates},
@@ -28,7 +28,7 @@ Json survey_json(const StampSurvey& survey) {
           {"long_time_ns", survey.long_time_ns}};
 }
 
-/// The facts about a stream. Members of unknown value are left out.
+/// Converts the facts about a stream to JSON. Members with unknown values are omitted.
 Json stream_json(const StreamReport& stream) {
   Json out = {{"stream", stream.stream}};
   if (!stream.nodes.empty()) out["nodes"] = stream.nodes;
@@ -53,9 +53,9 @@ Json stream_json(const StreamReport& stream) {
   return out;
 }
 
-/// The transform of a stream, with the residuals of its joints.
+/// Converts the transform of a stream, with the residuals of its joints, to JSON.
 Json space_json(const SpaceReport& space) {
-  // Eigen stores x,y,z,w. The text has w,x,y,z.
+  // Eigen stores x,y,z,w; the JSON contains w,x,y,z.
   const Quat& q = space.transform.rotation;
   const Vec3& t = space.transform.translation;
   Json out = {{"stream", space.stream},
@@ -100,23 +100,23 @@ Json findings_array(const Findings& findings) {
   return out;
 }
 
-/// Names may contain bytes that are not UTF-8; they become U+FFFD.
+/// Returns JSON as text. Bytes of names that are not UTF-8 become U+FFFD.
 std::string written(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-// ---- from JSON, which may come from another program: a member of a wrong type is ignored, and
+// ---- from JSON, which may come from another program: members of a wrong type are ignored, and
 // control characters in texts become '?'
 
-/// A stamp or duration, ns. 0 if there is none, or one that a take can't have.
+/// Reads a stamp or duration, ns. Returns 0 if it is missing or too large for a take.
 std::int64_t ns_at(const Json& json, const char* key) {
-  // About 126 years. The difference of two such numbers still fits into 64 bits.
+  // The limit is about 126 years. The difference of two such numbers fits into 64 bits.
   return whole_at(json, key, 4'000'000'000'000'000'000);
 }
 
 template <std::size_t count>
 std::array<double, count> numbers_at(const Json& json, const char* key) {
-  // Numbers that are missing stay 0.
+  // Missing numbers stay 0.
   std::array<double, count> out{};
   const Json& list = list_at(json, key);
   for (std::size_t i = 0; i < std::min(count, list.size()); ++i) {
@@ -125,8 +125,7 @@ std::array<double, count> numbers_at(const Json& json, const char* key) {
   return out;
 }
 
-/// The counts are checked against each other, because shares and differences are computed from
-/// them.
+/// The counts are checked for consistency, because shares and differences are computed from them.
 StampSurvey survey_from(const Json& json) {
   StampSurvey out;
   out.samples = count_at(json, "samples");
@@ -141,12 +140,13 @@ StampSurvey survey_from(const Json& json) {
   out.long_time_ns = ns_at(json, "long_time_ns");
   if (out.duplicates > out.samples || out.backward > out.samples - out.duplicates ||
       out.ahead > out.samples - out.duplicates - out.backward) {
-    out.duplicates = out.backward = out.ahead = 0;  // kept() must not wrap around
+    out.duplicates = out.backward = out.ahead = 0;  // otherwise kept() would become negative
   }
   return out;
 }
 
-/// A stream of the report. Its invalid samples are limited to all samples, since shares follow.
+/// Reads a stream of the report. The invalid samples are limited to the number of samples, because
+/// shares are computed from them.
 StreamReport stream_from(const Json& json) {
   StreamReport out;
   out.stream = text_at(json, "stream");
@@ -158,7 +158,7 @@ StreamReport stream_from(const Json& json) {
       json.is_object() && json.contains("stamps_counted") && json["stamps_counted"] == true;
   out.rate_hz = number_at(json, "rate_hz");
   out.gap_ns = ns_at(json, "gap_ns");
-  // A count that is missing reads as 0, which is also the count of a take that knew no such fault.
+  // A missing count is read as 0. Takes of older versions do not have these counts.
   out.held_back = count_at(json, "held_back");
   out.arrivals.near = count_at(json, "near");
   out.arrivals.late = count_at(json, "late");
@@ -178,21 +178,21 @@ StreamReport stream_from(const Json& json) {
   return out;
 }
 
-/// A space of the report. A rotation that is no unit quaternion is ignored.
+/// Reads a space of the report. A rotation that is not a unit quaternion is ignored.
 SpaceReport space_from(const Json& json) {
   SpaceReport out;
   out.stream = text_at(json, "stream");
   out.onto = text_at(json, "onto");
   out.method = text_at(json, "method");
   const auto q = numbers_at<4>(json, "rotation");
-  // Zeros, and thus a missing rotation, fail this test; the identity stays.
+  // A missing rotation consists of zeros, so the identity is kept.
   const Quat rotation(q[0], q[1], q[2], q[3]);
   if (rotation.norm() > 0.5 && rotation.norm() < 2.0) {
     out.transform.rotation = rotation.normalized();
   }
   const auto t = numbers_at<3>(json, "translation_m");
   out.transform.translation = Vec3(t[0], t[1], t[2]);
-  // A magnification of 0 would make all points equal.
+  // A magnification of 0 would put all points at one place.
   const double magnification = number_at(json, "magnification");
   if (magnification > 0.0) out.magnification = magnification;
   out.before_m = number_at(json, "before_m");
@@ -204,7 +204,7 @@ SpaceReport space_from(const Json& json) {
   return out;
 }
 
-/// A mark of the report.
+/// Reads a mark of the report.
 TakeMark mark_from(const Json& json) {
   TakeMark out;
   out.at = utc_time(ns_at(json, "time_ns"));
@@ -212,14 +212,14 @@ TakeMark mark_from(const Json& json) {
   out.text = text_at(json, "text");
   out.source = text_at(json, "source");
   if (json.is_object() && json.contains("latency_ms")) {
-    // The limit keeps the product below from overflowing.
+    // The limit prevents overflow of the product below.
     const double ms = std::clamp(number_at(json, "latency_ms"), -1e9, 1e9);
     out.latency = Duration{std::llround(1e6 * ms)};
   }
   return out;
 }
 
-/// A finding; an unknown severity counts as a warning.
+/// Reads a finding. An unknown severity becomes a warning.
 Finding finding_from(const Json& json) {
   const std::string severity = text_at(json, "severity");
   Finding out;
@@ -234,7 +234,7 @@ Finding finding_from(const Json& json) {
 
 }  // namespace
 
-/// The whole report as JSON.
+/// Returns the whole report as JSON.
 std::string report_json(const AlignmentReport& report) {
   Json out = {{"schema", "kinalign.report/1"},   {"frames", report.frames},
               {"begin_ns", to_ns(report.begin)}, {"end_ns", to_ns(report.end)},
@@ -252,7 +252,7 @@ std::string findings_json(const Findings& findings) { return written(findings_ar
 Findings parse_findings_json(std::string_view text) {
   const Json json = Json::parse(text, nullptr, false);
   Findings out;
-  // A text that is no list has no elements.
+  // If the JSON is not a list, there are no findings.
   for (const Json& finding : json.is_array() ? json : Json::array()) {
     out.push_back(finding_from(finding));
   }
@@ -261,7 +261,7 @@ Findings parse_findings_json(std::string_view text) {
 
 Result<AlignmentReport> parse_report_json(std::string_view text, const std::string& path) {
   const Json json = Json::parse(text, nullptr, false);
-  // Only this is a failure. All else that is wrong gives a report with fewer members.
+  // Only text that is not JSON is an error. Other faults give a report with fewer members.
   if (json.is_discarded()) {
     return refuse(path, "a report as JSON", "text that is not JSON");
   }

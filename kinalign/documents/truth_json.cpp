@@ -39,7 +39,7 @@ Json json_of(const TrueKinect& kinect) {
           {"clock", json_of(kinect.clock)}};
 }
 
-/// A node with all its errors.
+/// Converts a node with all its errors.
 Json json_of(const TrueNode& node) {
   return {{"stream", node.stream},
           {"node", node.node},
@@ -62,11 +62,11 @@ Vec3 vec3_from(const Json& json) {
 }
 Quat quat_from(const Json& json) {
   const auto q = json.get<std::array<double, 4>>();
-  // The digits of the text round the quaternion a little.
+  // The text contains rounded numbers, so the quaternion is normalised.
   return Quat(q[0], q[1], q[2], q[3]).normalized();
 }
 
-/// A whole number that fits the type; get() would silently cast 1e30.
+/// Reads an integer that fits the type. get() would convert 1e30 without an error.
 template <class Integer>
 Integer integer_from(const Json& json) {
   const bool fits =
@@ -80,7 +80,7 @@ Integer integer_from(const Json& json) {
 }
 std::vector<std::int64_t> integers_from(const Json& json) {
   std::vector<std::int64_t> integers;
-  // get_ref() throws if the value is no list.
+  // get_ref() throws an exception if the value is not a list.
   for (const Json& one : json.get_ref<const Json::array_t&>()) {
     integers.push_back(integer_from<std::int64_t>(one));
   }
@@ -92,7 +92,7 @@ TrueClock clock_from(const Json& json) {
 
 TrueMocap mocap_from(const Json& json) {
   const auto ns = [&](const char* key) { return integer_from<std::int64_t>(json.at(key)); };
-  // Members convert to the type of their field, or throw.
+  // Each member is converted to the type of its field; otherwise an exception is thrown.
   return {json.at("stream"),    json.at("rate_hz"),  integer_from<std::uint64_t>(json.at("frames")),
           ns("start_click_ns"), ns("stop_click_ns"), ns("first_frame_ns")};
 }
@@ -104,7 +104,7 @@ TrueKinect kinect_from(const Json& json) {
           clock_from(json.at("clock"))};
 }
 
-/// A node; a missing member throws.
+/// Reads a node. A missing member throws an exception.
 TrueNode node_from(const Json& json) {
   return {json.at("stream"),
           json.at("node"),
@@ -118,7 +118,7 @@ TrueNode node_from(const Json& json) {
           clock_from(json.at("clock"))};
 }
 
-/// The whole truth; a missing member throws.
+/// Reads the whole truth. A missing member throws an exception.
 TrueRecording truth_from(const Json& json) {
   TrueRecording truth;
   truth.seed = integer_from<std::uint64_t>(json.at("seed"));
@@ -127,7 +127,7 @@ TrueRecording truth_from(const Json& json) {
   truth.length_s = json.at("length_s");
   truth.start_ns = integer_from<std::int64_t>(json.at("start_ns"));
   truth.link = json.at("link");
-  // Only live simulations have a host.
+  // Only simulations that were sent live have a host.
   if (json.contains("host")) {
     truth.host = TrueHost{integer_from<std::int64_t>(json.at("host").at("raw_ns")),
                           integer_from<std::int64_t>(json.at("host").at("utc_ns"))};
@@ -138,7 +138,7 @@ TrueRecording truth_from(const Json& json) {
   return truth;
 }
 
-/// The message without its prefix in brackets, such as "[json.exception.out_of_range.403]".
+/// Returns the message without its prefix in brackets, such as "[json.exception.out_of_range.403]".
 std::string reason(const Json::exception& fault) {
   const std::string_view what = fault.what();
   const std::size_t end = what.find("] ");
@@ -147,7 +147,7 @@ std::string reason(const Json::exception& fault) {
 
 // ---- checks beyond types
 
-// Equal neighbours count as a fault, too.
+// Returns whether the values rise strictly.
 bool rises(const std::vector<std::int64_t>& values) {
   return std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
 }
@@ -162,7 +162,8 @@ Result<void> check(const std::string& name, const std::string& stream, const Tru
   if (!within_limits(clock.stamps_ns) || !within_limits(clock.times_ns)) {
     return refuse(name, "stamps and times of " + stream + " within 2e18 ns", "others");
   }
-  // The times need not rise: with stamps by arrival they may step back (docs/formats/truth.md).
+  // The true times need not rise: if samples are stamped on arrival, the times may go back
+  // (docs/formats/truth.md).
   if (clock.stamps_ns.size() == clock.times_ns.size() && rises(clock.stamps_ns)) return {};
   return refuse(name, "a clock of " + stream + " with a time for each of rising stamps", "another");
 }
@@ -170,7 +171,7 @@ Result<void> check(const std::string& name, const std::string& stream, const Tru
 }  // namespace
 
 std::string truth_json(const TrueRecording& truth) {
-  // One line without blanks: the clocks have many entries.
+  // The JSON has one line without spaces, because the clocks have many entries.
   Json json{{"schema", truth_schema},     {"seed", truth.seed},
             {"motion", truth.motion},     {"motion_file", truth.motion_file},
             {"length_s", truth.length_s}, {"start_ns", truth.start_ns},

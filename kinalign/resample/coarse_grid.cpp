@@ -11,15 +11,15 @@ namespace kinalign {
 
 namespace {
 
-// Share of the rms; smaller losses are below the accuracy of sensors.
+// Share of the rms. Smaller losses are below the accuracy of sensors.
 constexpr double least_share = 0.1;
 
 double root_mean(double sum, std::uint64_t samples) {
   return samples == 0 ? 0.0 : std::sqrt(std::max(0.0, sum) / static_cast<double>(samples));
 }
 
-/// Lagrange's weights of four values at the times `at`, for time `t`.
-/// These weights give the value at `t` of the cubic through the four values.
+/// Returns Lagrange's weights for the times `at`. With these weights, four values give the value at
+/// `t` of the cubic through them.
 std::array<double, 4> cubic_weights(const double* at, double t) {
   std::array<double, 4> weights{1.0, 1.0, 1.0, 1.0};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -34,7 +34,7 @@ std::array<double, 4> cubic_weights(const double* at, double t) {
 
 double CarriedContent::variation() const {
   double about_mean = squares;
-  // The mean square about the mean is the mean square less the square of the mean.
+  // The mean square about the mean is the mean square minus the square of the mean.
   for (const double s : sum) about_mean -= s * s / static_cast<double>(samples);
   return root_mean(about_mean, samples);
 }
@@ -47,10 +47,10 @@ void add_content(const Knots& raw, const Knots& rows, std::size_t first, Carried
   std::size_t right = 2;  // index of the row after the sample
   for (std::size_t k = 0; k < raw.times.size(); ++k) {
     const double t = raw.times[k];
-    // The cubic needs a row before the interval and one after it, so the first and last interval
-    // are left out.
+    // The cubic needs one row before and one after the interval, so the first and the last interval
+    // are omitted.
     if (t < at[1]) continue;
-    // Both lists rise, so the search goes on from the last place.
+    // Both lists rise, so the search continues from the last position.
     while (right + 1 < at.size() && at[right] <= t) ++right;
     if (right + 1 >= at.size()) return;
     const auto weights = cubic_weights(&at[right - 2], t);
@@ -69,14 +69,14 @@ void add_content(const Knots& raw, const Knots& rows, std::size_t first, Carried
 }
 
 Findings judge_carried(const std::vector<CarriedContent>& contents, const ContentNames& names) {
-  // `worst` is raised to the share of the worst part so far.
+  // `worst` becomes the share of the worst part so far.
   double worst = least_share;
   std::size_t part = contents.size();
   for (std::size_t k = 0; k < contents.size(); ++k) {
     const double lost = contents[k].missing(), all = contents[k].variation();
-    // A sensor at rest varies by its noise only, and noise is not content.
+    // A sensor at rest varies only by its noise, which does not count as motion.
     if (lost <= names.noise || lost <= worst * all) continue;
-    // A difference as large as the variation, or larger, counts as all of it.
+    // If the difference is at least as large as the variation, the whole motion counts as lost.
     worst = all > lost ? lost / all : 1.0;
     part = k;
   }

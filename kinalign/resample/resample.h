@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Resamples streams to the stamps of a grid (paper section 3.2): natural cubic splines on the true
-// stamps, rotations on the rotation group. Gaps are not interpolated: rows there are invalid and
-// zero. Splines end at gaps and use only samples that were seen.
+// Resamples streams to the stamps of a grid (HFUT-MMD paper, section 3.2). Positions use natural
+// cubic splines on the true stamps; rotations use splines on the rotation group. Gaps are not
+// interpolated: their rows are invalid and zero. Splines end at gaps and use only samples that were
+// seen.
 #pragma once
 
 #include "kinalign/motion/interpolation/rotation_spline.h"
@@ -16,63 +17,63 @@
 
 namespace kinalign {
 
-/// Number of knots on either side that influence either spline.
-/// Samples further away do not change a row, so the window drops them.
+/// Number of knots on either side of a row that influence its value. Samples farther away do not
+/// change the row, so the window drops them.
 constexpr std::size_t knots_felt = std::max(spline_reach, rotation_spline_reach);
 
 enum class RotationCurve { spline, slerp };
 
-/// step_ns decides whether samples are missing between two samples; gap_ns, whether the stretch is
-/// interpolated.
+/// The parameters for resampling a stream. step_ns is used to find missing samples between two
+/// samples; gap_ns is the longest time that is interpolated.
 struct ResampleRule {
-  std::int64_t gap_ns = 0;   // longer stretches without samples are gaps
-  std::int64_t step_ns = 0;  // nominal step, else the stream's median step
+  std::int64_t gap_ns = 0;   // longer times without samples are gaps
+  std::int64_t step_ns = 0;  // nominal step, or else the stream's median step
   TakenStep taken;           // the step at which the device took its samples
   RotationCurve curve = RotationCurve::spline;
-  std::int64_t begin_ns = 0, end_ns = 0;  // span of the take, in which gaps are counted
-  bool finer = false;  // the stream is finer than the grid: measure the lost content
+  std::int64_t begin_ns = 0, end_ns = 0;  // time span of the take, in which gaps are counted
+  bool finer = false;  // the stream's step is shorter than the grid's: measure the lost motion
 
   GapCount gap_count() const { return {gap_ns, begin_ns, end_ns}; }
   double rate_hz() const { return step_ns > 0 ? 1e9 / static_cast<double>(step_ns) : 0.0; }
   Reach reach() const { return {knots_felt, gap_ns}; }
 };
 
-/// The content of a stream that the grid can't carry, summed over calls. Empty unless the rule's
-/// `finer` is set.
+/// The motion that is too fast for the grid, summed over all calls. Empty unless the rule's `finer`
+/// is set.
 struct ResampleCount {
   std::vector<CarriedContent> positions;                       // [J]
   std::vector<CarriedContent> acceleration, angular_velocity;  // [S]
 };
 
-/// For each row of a grid its neighbours in a stream with rising stamps.
-/// `left` tells which samples a value comes from; `known_by` also serves rows outside of the
-/// stream.
+/// For each row of a grid, the neighbouring samples of a stream with rising stamps. `left` gives
+/// the sample before a row inside the stream. `known_by` is also set for rows outside the stream.
 struct Neighbours {
   std::vector<std::size_t> left;             // [n] index of the last sample at or before the row
-  std::vector<std::size_t> known_by;         // [n] the same; outside the stream the nearest sample
+  std::vector<std::size_t> known_by;         // the same; outside the stream, the nearest sample
   std::vector<std::int64_t> nearest_raw_ns;  // [n] at most farthest_nearest_ns
 };
-/// Rows outside the stream have left = stamps.size().
+/// For rows outside the stream, `left` is stamps.size().
 Neighbours find_neighbours(std::span<const std::int64_t> stamps,
                            std::span<const std::int64_t> grid);
 
-/// The interval of each row's time, ns, by the clock at the sample that it is known by. Empty if
-/// the clock knows no interval. `stamps`: of the samples, as the device gave them.
+/// Returns the half-width of each row's time interval, ns: that of the clock at the sample
+/// `known_by`. Empty if the clock has no interval. `stamps`: the device's stamps of the samples.
 std::vector<std::int64_t> intervals_at(const TimeModel& clock, std::span<const Time> stamps,
                                        const Neighbours& near);
 
-/// The parts that the resamplers of all three kinds share.
-/// A stream is read once, from its front, so the stamps of the grid must rise from call to call.
+/// The common part of the three resamplers. A stream is read once from its beginning, so the stamps
+/// of the grid must rise from call to call.
 template <class Frames>
 class Resampler {
  public:
   const ResampleCount& content() const { return count_; }
   StreamCounts counts() const { return window_.counts(); }
-  /// Call after the last rows: reads on so that the counts cover all samples up to the take's end.
+  /// Call after the last rows. Reads on, so that the counts include all samples up to the take's
+  /// end.
   Result<void> read_to_end() { return window_.move(rule_.end_ns, rule_.end_ns, rule_.reach()); }
 
  protected:
-  /// `taken`: the device's step, by which late samples are recognised.
+  /// `taken`: the device's step, which is needed to find late samples.
   Resampler(Pass<Frames> pass, const TimeModel& clock, const ResampleRule& rule, TakenStep taken)
       : window_(std::move(pass), clock, rule.gap_count(), taken), clock_(&clock), rule_(rule) {}
 
@@ -87,19 +88,19 @@ class PointResampler : public Resampler<PointFrames> {
   PointResampler(Pass<PointFrames> pass, const TimeModel& clock, const ResampleRule& rule)
       : Resampler(std::move(pass), clock, rule, rule.taken) {}
 
-  /// Makes the rows at the grid's stamps (ns, rising, also from call to call).
+  /// Makes the rows at the grid's stamps (ns, rising also from call to call).
   Result<void> rows(std::span<const std::int64_t> grid, PointRows& out);
 };
 
-/// Resamples the nodes of one stream, which share their stamps.
+/// Resamples the nodes of one stream. All have the same stamps.
 class ImuResampler : public Resampler<ImuSamples> {
  public:
   ImuResampler(Pass<ImuSamples> pass, const TimeModel& clock, const ResampleRule& rule,
                const ImuContent& content)
       : Resampler(std::move(pass), clock, rule, rule.taken), content_(content) {}
 
-  /// If `to_world`, vectors are rotated into the world before interpolation. In the space of a
-  /// rotating sensor a spline would bend straight motion.
+  /// If `to_world`, vectors are rotated into the world's axes before interpolation. In the axes of
+  /// a rotating sensor, straight motion would appear curved.
   Result<void> rows(std::span<const std::int64_t> grid, bool to_world, ImuRows& out);
 
  private:
@@ -108,11 +109,11 @@ class ImuResampler : public Resampler<ImuSamples> {
 
 class ClipResampler : public Resampler<ClipFrames> {
  public:
-  // An empty TakenStep: late frames of a clip are not looked for.
+  // The empty TakenStep means that late frames of a skeleton stream are not looked for.
   ClipResampler(Pass<ClipFrames> pass, const TimeModel& clock, const ResampleRule& rule)
       : Resampler(std::move(pass), clock, rule, {}) {}
 
-  /// Fills everything except the global positions.
+  /// Computes everything except the global positions.
   Result<void> rows(std::span<const std::int64_t> grid, ClipRows& out);
 };
 

@@ -10,8 +10,7 @@ namespace kinalign {
 
 namespace {
 
-/// The rotations of one joint in consecutive frames.
-/// [T',4], as the curves take them.
+/// Returns the rotations [T',4] of one joint in consecutive frames.
 std::vector<double> column(const std::vector<double>& rotations, std::size_t joints, std::size_t j,
                            std::size_t first, std::size_t last) {
   std::vector<double> out;
@@ -22,12 +21,13 @@ std::vector<double> column(const std::vector<double>& rotations, std::size_t joi
   return out;
 }
 
-/// Fills the rows of one segment.
+/// Computes the rows of one segment.
 void resample(const Segment& s, const Window<ClipFrames>& window,
               std::span<const std::int64_t> grid, RotationCurve curve, ClipRows& out) {
   const std::size_t knots = s.last - s.first, rows = s.row_end - s.row;
   const std::span stamps(window.time_ns);
-  // The block does not state the number of joints; it follows from the sizes of the arrays.
+  // The block does not contain the number of joints, so it is computed from the sizes of the
+  // arrays.
   const std::size_t channels = window.rows.local_positions.size() / stamps.size();
   const std::size_t joints = channels / 3;
   const auto x = seconds_from(stamps[s.first], stamps.subspan(s.first, knots));
@@ -35,7 +35,7 @@ void resample(const Segment& s, const Window<ClipFrames>& window,
   const Knots spline{
       x, std::span(window.rows.local_positions).subspan(s.first * channels, knots * channels),
       channels};
-  // The second derivatives at the knots.
+  // Second derivatives at the knots.
   std::vector<double> bends(knots * channels);
   natural_spline(spline, bends);
   spline_at(spline, bends, at,
@@ -59,7 +59,7 @@ Result<void> ClipResampler::rows(std::span<const std::int64_t> grid, ClipRows& o
   const auto& stamps = window_.time_ns;
   if (stamps.empty()) return Failure(Error{"", 0, "frames in a clip", "none"});
   const std::size_t channels = window_.rows.local_positions.size() / stamps.size();
-  // Rows that no segment covers stay zero and invalid.
+  // Rows outside all segments stay zero and invalid.
   out.local_positions.assign(grid.size() * channels, 0.0);
   out.local_rotations.assign(grid.size() * channels / 3 * 4, 0.0);
   out.valid.assign(grid.size(), 0);

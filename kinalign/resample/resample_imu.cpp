@@ -22,7 +22,7 @@ NodeSamples samples_of(const Window<ImuSamples>& window, std::size_t node,
                        const ImuContent& content, bool to_world) {
   const ImuSamples& rows = window.rows;
   const std::size_t nodes = rows.valid.size() / rows.size();
-  // Acceleration and angular velocity stand side by side, so one spline serves both.
+  // Acceleration and angular velocity are adjacent channels, so one spline interpolates both.
   NodeSamples out;
   const auto add = [&out](const Vec3& v) {
     out.vectors.insert(out.vectors.end(), v.begin(), v.end());
@@ -30,7 +30,7 @@ NodeSamples samples_of(const Window<ImuSamples>& window, std::size_t node,
   out.channels = (content.acceleration ? 3U : 0U) + (content.angular_velocity ? 3U : 0U);
   for (std::size_t t = 0; t < rows.size(); ++t) {
     const std::size_t i = t * nodes + node;
-    // Nodes lose samples independently, so each node has stamps of its own.
+    // Nodes lose samples independently, so each node has its own stamps.
     if (rows.valid[i] == 0) continue;
     out.stamps.push_back(window.time_ns[t]);
     Quat turn = Quat::Identity();
@@ -45,7 +45,7 @@ NodeSamples samples_of(const Window<ImuSamples>& window, std::size_t node,
   return out;
 }
 
-/// The column of one node in the rows, and the sums for its lost content.
+/// The column of one node in the rows, and the sums for its lost motion.
 struct NodeColumn {
   std::size_t node, nodes;
   const ImuContent& content;
@@ -54,7 +54,7 @@ struct NodeColumn {
 
 void put_vectors(const std::vector<double>& values, const Segment& s, const NodeColumn& column,
                  ImuRows& out) {
-  // `values` [rows, channels]: the acceleration first, if the node has it.
+  // `values` [rows, channels]: the acceleration comes first, if the node has it.
   const std::size_t rows = s.row_end - s.row, channels = values.size() / rows;
   for (std::size_t r = 0; r < rows; ++r) {
     const std::size_t cell = (s.row + r) * column.nodes + column.node;
@@ -66,7 +66,7 @@ void put_vectors(const std::vector<double>& values, const Segment& s, const Node
   }
 }
 
-/// Measures the content of a node's vectors that the rows of one segment can't carry.
+/// Measures the motion of a node's vectors that is lost in the rows of one segment.
 void measure(const Knots& raw, const Knots& rows, const NodeColumn& column) {
   ResampleCount& count = *column.count;
   count.acceleration.resize(column.nodes);
@@ -78,14 +78,14 @@ void measure(const Knots& raw, const Knots& rows, const NodeColumn& column) {
   }
 }
 
-/// Fills the rows of one node, segment by segment.
+/// Computes the rows of one node, segment by segment.
 void interpolate(const NodeSamples& samples, std::span<const std::int64_t> grid,
                  const ResampleRule& rule, const NodeColumn& column, ImuRows& out) {
-  // A node's gaps are found in its own valid samples, not in the stream's rows.
+  // A node's gaps are determined by its own valid samples, not by the stream's rows.
   for (const Segment& s : find_segments(samples.stamps, grid, rule.gap_ns)) {
     const std::size_t knots = s.last - s.first, rows = s.row_end - s.row;
     const auto stamps = std::span(samples.stamps).subspan(s.first, knots);
-    // Times count from the segment's first knot, so a double keeps them exactly enough.
+    // Times are counted from the segment's first knot, so a double holds them precisely.
     const auto x = seconds_from(stamps.front(), stamps);
     const auto at = seconds_from(stamps.front(), grid.subspan(s.row, rows));
     if (samples.channels > 0) {
@@ -106,13 +106,13 @@ void interpolate(const NodeSamples& samples, std::span<const std::int64_t> grid,
                     &out.orientation[4 * ((s.row + r) * column.nodes + column.node)]);
       }
     }
-    // A row within a segment is valid for this node, whatever other nodes show.
+    // A row within a segment is valid for this node, even if other nodes are not valid.
     for (std::size_t r = s.row; r < s.row_end; ++r) out.valid[r * column.nodes + column.node] = 1;
   }
 }
 
-/// Finds each row's distance to the node's nearest sample, and the rows that lie between samples
-/// with lost ones between them.
+/// Computes the time from each row to the node's nearest sample, and marks the rows that were
+/// interpolated over lost samples.
 void put_distances(const NodeSamples& samples, std::span<const std::int64_t> grid,
                    const ResampleRule& rule, const NodeColumn& column, ImuRows& out) {
   const Neighbours near = find_neighbours(samples.stamps, grid);
@@ -120,16 +120,16 @@ void put_distances(const NodeSamples& samples, std::span<const std::int64_t> gri
     const std::size_t cell = r * column.nodes + column.node, left = near.left[r];
     out.distance.nearest_raw_ns[cell] = near.nearest_raw_ns[r];
     if (out.valid[cell] == 0) continue;
-    // A row at the stamp of a sample is that sample.
+    // A row at the stamp of a sample has the value of that sample.
     const bool between = samples.stamps[left] != grid[r];
-    // A step of one and a half usual steps means that at least one sample is missing.
+    // If a step is longer than 1.5 usual steps, at least one sample is missing.
     const bool lost =
         between && samples.stamps[left + 1] - samples.stamps[left] > rule.step_ns * 3 / 2;
     out.distance.over_loss[cell] = lost ? 1 : 0;
   }
 }
 
-/// Arrays for n samples, none of them valid.
+/// Returns arrays for n samples, all invalid.
 ImuRows no_samples(std::size_t n, const ImuContent& content) {
   ImuRows out;
   out.valid.assign(n, 0);
@@ -157,7 +157,7 @@ Result<void> ImuResampler::rows(std::span<const std::int64_t> grid, bool to_worl
     interpolate(samples, grid, rule_, column, out);
     put_distances(samples, grid, rule_, column, out);
   }
-  // The clock belongs to the stream and not to a node, so all rows of samples count here.
+  // All nodes of a stream have the same clock, so the stamps of all samples are used here.
   auto& intervals = out.distance.time_interval_ns;
   for (const std::int64_t interval :
        intervals_at(*clock_, window_.rows.stamps, find_neighbours(stamps, grid))) {

@@ -12,8 +12,8 @@ namespace {
 
 using Joints = std::vector<std::size_t>;
 
-/// Groups joints by the samples in which they were seen, because joints of one group share a
-/// spline. Usually there is one group.
+/// Groups joints by the frames in which they were seen, because joints with the same frames can be
+/// interpolated together. Usually there is one group.
 std::map<std::vector<bool>, Joints> joints_by_seen(const PointFrames& rows, std::size_t joints) {
   std::map<std::vector<bool>, Joints> groups;
   std::vector<bool> seen(rows.size());
@@ -33,7 +33,7 @@ struct Gathered {
   std::vector<double> values;
 };
 
-/// The group's joints stand side by side, so that one factorisation serves all their channels.
+/// All channels of the group are adjacent, so that the spline's equations are solved once for all.
 Gathered gather(const Window<PointFrames>& window, const std::vector<bool>& seen,
                 const Joints& group, std::size_t joints) {
   Gathered out;
@@ -49,12 +49,13 @@ Gathered gather(const Window<PointFrames>& window, const std::vector<bool>& seen
   return out;
 }
 
-/// Fits one spline per segment for all channels of a group. Rows outside the segments stay invalid.
+/// Computes one spline per segment for all channels of a group. Rows outside the segments stay
+/// invalid.
 void interpolate(const Gathered& samples, std::span<const std::int64_t> grid,
                  const ResampleRule& rule, PointRows& out, ResampleCount& count) {
   const Joints& group = *samples.group;
   const std::size_t joints = out.valid.size() / grid.size(), channels = 3 * group.size();
-  // The arrays are reused from segment to segment.
+  // The memory of these arrays is reused for each segment.
   std::vector<double> bends, values;
   for (const Segment& s : find_segments(samples.stamps, grid, rule.gap_ns)) {
     const std::size_t knots = s.last - s.first, rows = s.row_end - s.row;
@@ -81,7 +82,7 @@ void interpolate(const Gathered& samples, std::span<const std::int64_t> grid,
   }
 }
 
-/// The stamps of the frames in which any joint was seen.
+/// Returns the stamps of the frames in which any joint was seen.
 std::vector<std::int64_t> stamps_seen(const Window<PointFrames>& window) {
   std::vector<std::int64_t> out;
   for (std::size_t t = 0; t < window.time_ns.size(); ++t) {
@@ -97,13 +98,13 @@ Neighbours find_neighbours(std::span<const std::int64_t> stamps,
   Neighbours out;
   std::size_t k = 0;
   for (const std::int64_t row : grid) {
-    // Both lists rise, so k never goes back.
+    // Both lists rise, so k never decreases.
     while (k + 1 < stamps.size() && stamps[k + 1] <= row) ++k;
     const bool outside = stamps.empty() || row < stamps.front() || row > stamps.back();
     out.left.push_back(outside ? stamps.size() : k);
     out.known_by.push_back(k);
     std::int64_t nearest = farthest_nearest_ns;
-    // The nearest sample is the last one at or before the row, or the one after it.
+    // The nearest sample is the last one at or before the row or the one after it.
     for (std::size_t i = k; i < std::min(k + 2, stamps.size()); ++i) {
       nearest = std::min(nearest, std::abs(row - stamps[i]));
     }
@@ -120,8 +121,8 @@ std::vector<std::int64_t> intervals_at(const TimeModel& clock, std::span<const T
   return out;
 }
 
-/// A row has the worse state of its two neighbours. It counts as over a loss if a sample is missing
-/// between them.
+/// A row gets the worse state of its two neighbours. If a sample is missing between them, the row
+/// is marked as interpolated over missing samples.
 Result<void> PointResampler::rows(std::span<const std::int64_t> grid, PointRows& out) {
   out = {};
   if (grid.empty()) return {};
@@ -137,18 +138,19 @@ Result<void> PointResampler::rows(std::span<const std::int64_t> grid, PointRows&
     interpolate(gather(window_, seen, group, joints), grid, rule_, out, count_);
   }
   const Neighbours near = find_neighbours(stamps, grid);
-  // A frame without any joint is no sample for this distance, but its stamp is known all the same.
+  // A frame in which no joint was seen does not count for nearest_raw_ns. Its stamp still gives the
+  // time interval.
   out.distance.nearest_raw_ns = find_neighbours(stamps_seen(window_), grid).nearest_raw_ns;
   out.distance.time_interval_ns = intervals_at(*clock_, window_.rows.stamps, near);
   for (std::size_t r = 0; r < grid.size(); ++r) {
     const std::size_t left = near.left[r];
     if (left == stamps.size()) continue;
-    // A row at a sample's stamp has that sample's state alone.
+    // A row at the stamp of a sample gets the state of that sample.
     const std::size_t right = stamps[left] == grid[r] ? left : left + 1;
     const bool lost = stamps[right] - stamps[left] > rule_.step_ns * 3 / 2;
     for (std::size_t j = 0; j < joints; ++j) {
       const std::size_t cell = r * joints + j;
-      // Tracking's values rise from missing to tracked.
+      // The values of Tracking rise from missing to tracked.
       const Tracking lesser =
           std::min(window_.rows.state[left * joints + j], window_.rows.state[right * joints + j]);
       if (out.valid[cell] == 0) continue;

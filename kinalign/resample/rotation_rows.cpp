@@ -9,8 +9,8 @@ namespace kinalign {
 std::vector<double> rotations_at(RotationCurve curve, std::span<const double> times,
                                  std::span<const double> knots, std::span<const double> at) {
   std::vector<double> out(4 * at.size());
-  // slerp keeps every turn between two knots at one speed; the spline also keeps the speed
-  // continuous at them.
+  // With slerp the angular velocity is constant between knots and jumps at knots. With the spline
+  // it is continuous.
   if (curve == RotationCurve::slerp) {
     slerp_at(times, knots, at, out);
   } else {

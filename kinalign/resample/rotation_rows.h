@@ -8,8 +8,8 @@
 
 namespace kinalign {
 
-/// The rotations [N,4] at the times `at` of the curve through `knots` [T,4] at `times` (see
-/// rotation_spline.h and slerp.h in motion/interpolation/).
+/// Returns the rotations [N,4] at the times `at`, on the curve through `knots` [T,4] at `times`
+/// (rotation_spline.h and slerp.h in motion/interpolation/).
 std::vector<double> rotations_at(RotationCurve curve, std::span<const double> times,
                                  std::span<const double> knots, std::span<const double> at);
 

@@ -10,10 +10,9 @@ std::vector<Segment> find_segments(std::span<const std::int64_t> stamps,
   std::vector<Segment> segments;
   std::size_t first = 0;
   for (std::size_t i = 1; i <= stamps.size(); ++i) {
-    // i == stamps.size() ends the last segment.
+    // The last segment ends at i == stamps.size().
     if (i < stamps.size() && stamps[i] - stamps[i - 1] <= gap_ns) continue;
-    // Rows outside of the segment's knots would have to be extrapolated, so they are not part of
-    // it.
+    // Rows outside the segment's knots would have to be extrapolated, so they are not included.
     const auto row = std::lower_bound(grid.begin(), grid.end(), stamps[first]);
     const auto end = std::upper_bound(row, grid.end(), stamps[i - 1]);
     if (row != end) {
@@ -28,7 +27,7 @@ std::vector<Segment> find_segments(std::span<const std::int64_t> stamps,
 std::vector<double> seconds_from(std::int64_t origin, std::span<const std::int64_t> stamps) {
   std::vector<double> out(stamps.size());
   for (std::size_t i = 0; i < stamps.size(); ++i) {
-    // Subtracted as integers: seconds since 1970 would lose the nanoseconds.
+    // The subtraction uses integers, because seconds since 1970 as doubles would lose nanoseconds.
     out[i] = static_cast<double>(stamps[i] - origin) * 1e-9;
   }
   return out;

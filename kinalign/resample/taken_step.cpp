@@ -7,11 +7,11 @@
 namespace kinalign {
 
 TakenStep taken_step(const RecordedStream& s, const StreamOptions& options, Role role) {
-  // A step is known well enough if another measure of it is within these shares. KinectMultiTrack:
-  // the median is 34 ms, the usual mean 32.2 to 33.3.
+  // The step is known precisely enough if another measure of the step is within these shares. For
+  // KinectMultiTrack the median is 34 ms and the usual mean 32.2 to 33.3 ms.
   constexpr double quite_another = 1.5, stated = 0.05, usual = 0.08, mean = 0.03;
   constexpr double usual_to_mean = 0.12;  // stalls: 10 %; rounded stamps: 15 % and more
-  // A loop is recognised if one step in this many was read at once with the next.
+  // A slow loop is recognised if at least one sample in this many was read together with the next.
   constexpr std::uint64_t loop = 50;
   const std::int64_t stated_ns = usual_step_ns(s, options);
   const auto stated_step = static_cast<double>(stated_ns);
@@ -19,9 +19,9 @@ TakenStep taken_step(const RecordedStream& s, const StreamOptions& options, Role
   const auto near = [](double one, double other, double share) {
     return std::abs(one - other) < share * other;
   };
-  // The stream's own statement of its step is exact, for example the frame time of a BVH.
+  // A step that the stream itself states is exact, for example the frame time of a BVH.
   if (s.step_ns || median <= 0.0) return {stated_ns, role, true};
-  // usual_step is the mean of the usual steps only, so stalls do not move it.
+  // usual_step is the mean of the usual steps only, so stalls do not change it.
   const auto usual_step = static_cast<double>(s.survey.usual_step_ns);
   const bool another =
       stated_step >= quite_another * median || quite_another * stated_step <= median;

@@ -7,7 +7,7 @@ namespace kinalign {
 
 namespace {
 
-/// The width is 0 for a quantity that the stream does not have. Blocks are never empty.
+/// The width is 0 if the stream does not have the quantity. Blocks are never empty.
 template <class T>
 void append(std::vector<T>& to, const std::vector<T>& from, std::size_t rows, std::size_t first,
             std::size_t count) {
@@ -48,7 +48,7 @@ void drop_last(Frames& rows) {
   for_each_frame_array<Frames>([&](auto array) { drop_back(rows.*array, all); });
 }
 
-// Instantiated for the three kinds of blocks, so that window.h needs no code for them.
+// Instantiated here for the three kinds of blocks, so that their code is not in window.h.
 template void append_rows(ClipFrames&, const ClipFrames&, std::size_t, std::size_t);
 template void append_rows(PointFrames&, const PointFrames&, std::size_t, std::size_t);
 template void append_rows(ImuSamples&, const ImuSamples&, std::size_t, std::size_t);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The samples of a stream around the rows being made. A stream is pulled block by block. Samples
-// whose time on the take's axis does not rise (motion/stamps.h) are dropped, and so are samples
-// that were stamped late (resample/arrival_lines.h). Samples that no later row needs are dropped,
-// too. Rows and counts do not depend on how the stream is cut into blocks.
+// The samples of a stream around the rows that are being made. A stream is read block by block.
+// Three kinds of samples are dropped: samples whose time does not rise (motion/stamps.h), samples
+// that were stamped late (resample/arrival_lines.h), and samples that no later row needs. Rows and
+// counts do not depend on the size of the blocks.
 #pragma once
 
 #include "kinalign/motion/stamps.h"
@@ -18,8 +18,9 @@
 
 namespace kinalign {
 
-// Append rows of one block to another, drop rows from the front, drop the last row. The number of
-// values per row follows from the sizes of the arrays. Defined for all three kinds of blocks.
+// These functions append rows of one block to another, drop rows at the front, and drop the last
+// row. The number of values per row is computed from the sizes of the arrays. They exist for all
+// three kinds of blocks.
 template <class Frames>
 void append_rows(Frames& to, const Frames& from, std::size_t first, std::size_t count);
 template <class Frames>
@@ -27,7 +28,8 @@ void drop_front(Frames& rows, std::size_t count);
 template <class Frames>
 void drop_last(Frames& rows);
 
-// The columns of a row that were seen. A column is a joint, a node, or the whole body of a clip.
+// The columns of a row that were seen. A column is a joint, a node, or the whole body of a
+// skeleton.
 inline std::size_t columns(const ClipFrames&) { return 1; }
 inline std::size_t columns(const PointFrames& rows) { return rows.state.size() / rows.size(); }
 inline std::size_t columns(const ImuSamples& rows) { return rows.valid.size() / rows.size(); }
@@ -51,32 +53,32 @@ bool any_seen(const Frames& rows, std::size_t row) {
   return false;
 }
 
-/// Distances to raw samples are measured up to this limit. Otherwise a column that was not seen for
-/// hours would keep hours of samples in memory.
+/// Greatest time to a raw sample that is measured. Without this limit, a column that was not seen
+/// for hours would require hours of samples in memory.
 constexpr std::int64_t farthest_nearest_ns = 10'000'000'000;
 
-/// The samples around a row that matter: this many seen samples of each column, or those up to a
-/// gap; and the nearest one within farthest_nearest_ns.
+/// The samples around a row that are needed: in each column `knots` seen samples or those up to a
+/// gap, and the nearest sample within farthest_nearest_ns.
 struct Reach {
   std::size_t knots = 0;
   std::int64_t gap_ns = 0;
 
-  /// True if a sample is too far away to matter: it is `distance` from the last of the `found`
-  /// knots, or from the row if none was found yet.
+  /// Returns whether a sample is too far away to be needed. `distance` is the time from the last of
+  /// the `found` knots or, if there is none, from the row.
   bool ended(std::int64_t distance, std::size_t found) const {
     return distance > (found == 0 ? std::max(gap_ns, farthest_nearest_ns) : gap_ns);
   }
 };
 
-/// Counts the stretches within a span in which nothing was seen.
+/// Counts the gaps within a time span: times in which nothing was seen.
 struct GapCount {
-  std::int64_t limit_ns = 0;                              // longer stretches count as gaps
-  std::int64_t begin_ns = INT64_MIN, end_ns = INT64_MAX;  // span of the take; by default unlimited
+  std::int64_t limit_ns = 0;                              // longer times count as gaps
+  std::int64_t begin_ns = INT64_MIN, end_ns = INT64_MAX;  // the take's span; default: unlimited
   std::uint64_t gaps = 0;
-  std::int64_t time_ns = 0;  // sum of the gaps' lengths within the span
+  std::int64_t time_ns = 0;  // sum of the gaps' lengths within the time span
 
-  /// Adds a stretch. Time after the take's end is not counted, because the amount read there is
-  /// arbitrary.
+  /// Adds a time without samples. Time after the take's end is not counted, because it is arbitrary
+  /// how far the stream was read there.
   void add(std::int64_t from, std::int64_t to) {
     to = std::min(to, end_ns);
     if (from >= to || to - from <= limit_ns || to <= begin_ns) return;
@@ -88,14 +90,15 @@ struct GapCount {
 /// Counts of a stream so far, up to the take's end (gaps.end_ns).
 struct StreamCounts {
   GapCount gaps;
-  std::uint64_t held_back = 0;  // samples dropped because the next one came too soon after them
-  /// Counts over all rising stamps. For a resampled stream `near` is the number of dropped samples.
+  std::uint64_t held_back = 0;  // samples dropped because the next sample followed too soon
+  /// Counts over all rising stamps. For a resampled stream, `near` is the number of dropped
+  /// samples.
   Arrivals arrivals;
 };
 
-/// Keeps the samples of one pass around the rows being made. `rows` and `time_ns` always have the
-/// same number of rows. The newest rows may still be dropped, so move() reads on until the rows
-/// that matter are final.
+/// Stores the samples of one pass around the rows that are being made. `rows` and `time_ns` always
+/// have the same number of rows. The newest rows may still be dropped, so move() reads on until the
+/// needed rows are final.
 template <class Frames>
 class Window {
  public:
@@ -106,10 +109,11 @@ class Window {
         near_counts_(step.role == Role::reference),
         gaps_(count) {}
 
-  /// Afterwards `rows` contain all samples within [from, to] and, if the stream has them, `reach`
-  /// on either side. `from` and `to` (ns on the take's axis) must rise from call to call.
+  /// Reads until `rows` contains all samples within [from, to] and, if the stream has them, those
+  /// within `reach` on either side. `from` and `to` (ns on the take's time axis) must rise from
+  /// call to call.
   Result<void> move(std::int64_t from, std::int64_t to, const Reach& reach) {
-    // forget() bounds the memory while a long stretch without rows is read.
+    // A long time without rows may be read here; forget() limits the memory.
     while (!ended_ && !reaches(to, reach)) {
       KA_TRY(pull());
       forget(from, reach);
@@ -118,7 +122,7 @@ class Window {
     return {};
   }
 
-  /// Afterwards `rows` begin at the first sample not before `from` and contain at least `count`
+  /// Reads until `rows` begins at the first sample at or after `from` and contains at least `count`
   /// samples, if the stream has them.
   Result<void> fill(std::int64_t from, std::size_t count) {
     for (;;) {
@@ -128,13 +132,13 @@ class Window {
     }
   }
 
-  Frames rows;                        // stamps as given by the device
+  Frames rows;                        // with the device's stamps
   std::vector<std::int64_t> time_ns;  // [rows] ns on the take's axis, strictly rising
 
   StreamCounts counts() const {
     StreamCounts out{gaps_, held_back_, at_end_ ? *at_end_ : lines_.result()};
     const bool has_end = gaps_.end_ns != INT64_MAX;
-    // Nothing was seen from the last seen row to the take's end.
+    // Nothing was seen between the last seen row and the take's end.
     if (has_end && last_seen_) out.gaps.add(*last_seen_, gaps_.end_ns);
     if (!near_counts_) out.arrivals.near = held_back_;
     return out;
@@ -151,14 +155,14 @@ class Window {
     time_ns.erase(time_ns.begin(), time_ns.begin() + static_cast<std::ptrdiff_t>(count));
   }
 
-  /// Drops the samples before `from` that are not within `reach` of it in any column.
+  /// Drops the samples before `from` that are outside `reach` in every column.
   void drop_before(std::int64_t from, const Reach& reach) {
     const std::size_t inside = first_not_before(from);
     std::size_t first = inside;
     const std::size_t width = inside > 0 ? columns(rows) : 0;
     for (std::size_t c = 0; c < width; ++c) {
       std::size_t knots = 0;
-      // The stamp of the last knot that was found.
+      // Stamp of the last knot found.
       std::int64_t last = from;
       for (std::size_t t = inside; t-- > 0 && knots < reach.knots;) {
         if (reach.ended(last - time_ns[t], knots)) break;
@@ -171,7 +175,7 @@ class Window {
     drop(first);
   }
 
-  /// True if the samples within `reach` after `to` are present in each column.
+  /// Returns whether the samples within `reach` after `to` are present in each column.
   bool reaches(std::int64_t to, const Reach& reach) const {
     const std::size_t end = sure();
     if (end == 0 || time_ns[end - 1] < to) return false;
@@ -190,21 +194,21 @@ class Window {
     return true;
   }
 
-  /// Number of rows that no later sample can show to be delayed.
+  /// Returns the number of rows that no later sample can show to be delayed.
   std::size_t sure() const {
     if (ended_ || time_ns.empty()) return time_ns.size();
     const auto open = lines_.open_since(time_ns.back());
     return open ? first_not_before(*open) : time_ns.size();
   }
 
-  /// Drops rows while pulling, when at least half of them are old: a stretch without rows may be
-  /// long. Rows before `from` may still come; the samples that they need are kept.
+  /// Drops rows during reading, when at least half of them are old. Otherwise a long time without
+  /// rows would fill the memory. Samples for later rows from `from` on are not dropped.
   void forget(std::int64_t from, const Reach& reach) {
     if (time_ns.empty() || time_ns[time_ns.size() / 2] >= from) return;
     drop_before(std::min(from, time_ns.back()), reach);
   }
 
-  /// Pulls blocks until the last row can no longer be taken back.
+  /// Reads blocks until the last row is final with respect to its stamp.
   Result<void> pull() {
     do {
       if (!KA_TRY(pass_(block_))) {
@@ -216,15 +220,15 @@ class Window {
     return {};
   }
 
-  /// Appends the kept samples of a block. Runs of kept rows are appended together.
+  /// Appends the accepted samples of a block. Consecutive accepted rows are appended together.
   void take_block() {
-    std::size_t first = 0, i = 0;  // rows [first, i) are kept and not yet appended
+    std::size_t first = 0, i = 0;  // rows [first, i) are accepted but not appended yet
     const auto flush = [&](std::size_t next) {
       append_rows(rows, block_, first, i - first);
       first = next;
     };
     for (; i < block_.size(); ++i) {
-      // Stamps are judged on the take's axis, because the device's clock may step.
+      // Stamps are judged on the take's time axis, because the device's clock may step.
       const Time at = take_time(*clock_, block_.stamps[i]);
       const StampFate fate = rule_.judge(at);
       if (fate != StampFate::kept && fate != StampFate::replaces) {
@@ -232,12 +236,12 @@ class Window {
         continue;
       }
       const std::int64_t t = to_ns(at);
-      // The row before it had a wrong stamp. It must be in `rows` before it can be removed.
+      // The previous row had a wrong stamp. It must be in `rows` before it can be removed.
       if (fate == StampFate::replaces) {
         flush(i);
         take_back();
       }
-      // A row in which nothing was seen keeps its place, but belongs to no line and ends no gap.
+      // A row in which nothing was seen is stored, but it belongs to no line and ends no gap.
       if (!look(i)) {
         time_ns.push_back(t);
         continue;
@@ -257,7 +261,7 @@ class Window {
     flush(i);
   }
 
-  /// Fills `seen_` with the columns of row i of the block; true if any was seen.
+  /// Fills `seen_` with the columns of row i of the block. Returns whether any column was seen.
   bool look(std::size_t i) {
     const std::size_t width = columns(block_);
     seen_.resize(width);
@@ -269,14 +273,14 @@ class Window {
     return any;
   }
 
-  /// Drops the row at `late`, because the row with `seen_` shows that it was delayed. Only the
-  /// columns that both rows show are dropped. Rows of other lines may follow it.
+  /// Drops the row at `late`, because the row with the columns `seen_` shows that it was delayed.
+  /// Only the columns that both rows have are dropped. Rows of other lines may follow the late row.
   void leave_out(std::int64_t late) {
     if (late <= gaps_.end_ns) ++held_back_;
     const std::size_t row = first_not_before(late), width = seen_.size();
-    // No later row needed it, so it has left the window.
+    // No later row needed the late row, so it was already dropped.
     if (row == time_ns.size() || time_ns[row] != late) return;
-    // The whole row is dropped only if it shows no other column and no seen row came after it.
+    // The whole row is dropped only if it has no other column and no seen row follows.
     bool whole = late == last_seen_;
     for (std::size_t c = 0; c < width && whole; ++c) {
       whole = seen_[c] != 0 || !seen(rows, row * width + c);
@@ -298,7 +302,7 @@ class Window {
     if (!was_seen) return;
     if (before_[0].in_line) lines_.take_back();
     restore();
-    // The removed row may have been the first one after the take's end.
+    // The removed row may have been the first row after the take's end.
     if (last_seen_ <= gaps_.end_ns) at_end_.reset();
   }
 
@@ -307,7 +311,7 @@ class Window {
     time_ns.pop_back();
   }
 
-  /// Records that the row at `t` shows the columns `seen_`.
+  /// Records that the row at `t` has the columns `seen_`.
   void see(std::int64_t t, std::optional<std::size_t> line) {
     before_[1] = before_[0];
     before_[0] = {last_seen_, gaps_, line.has_value()};
@@ -326,16 +330,16 @@ class Window {
   Pass<Frames> pass_;
   const TimeModel* clock_;
   Frames block_;
-  std::vector<std::uint8_t> seen_;  // [columns] of the row being processed
+  std::vector<std::uint8_t> seen_;  // [columns] of the row that is being processed
   StampRule rule_;
   ArrivalLines lines_;
   std::optional<Arrivals> at_end_;  // lines_.result() before the first row after the take's end
-  bool near_counts_;                // true for the reference, whose delayed rows are kept
+  bool near_counts_;                // true for the reference, whose delayed rows are not dropped
   GapCount gaps_;
   std::uint64_t held_back_ = 0;
-  std::optional<std::int64_t> last_seen_;  // stamp of the last row added with anything in it
-  /// The states before the last seen row and before the one before it. A row with a wrong stamp may
-  /// be removed, and then the row before it may turn out to be late.
+  std::optional<std::int64_t> last_seen_;  // stamp of the newest row in which anything was seen
+  /// The states before the newest seen row [0] and before the row preceding it [1]. A row with a
+  /// wrong stamp may be removed, and the preceding row may then be found late.
   struct Before {
     std::optional<std::int64_t> last_seen;
     GapCount gaps;
