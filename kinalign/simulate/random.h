@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random numbers by counter. Number k of a stream is a function of (seed, stream, k, lane), so it
-// does not depend on the order of calls or on the number of threads. The mixing function is
-// SplitMix64's (Steele, Lea, Flood, «Fast splittable pseudorandom number generators», 2014).
+// Random numbers by counter. Number k of a stream is a function of (seed, stream, k, lane). It
+// therefore does not depend on the order of calls or on the number of threads. The mixing function
+// is that of SplitMix64 (Steele, Lea, Flood, «Fast splittable pseudorandom number generators»,
+// 2014).
 #pragma once
 
 #include <cmath>

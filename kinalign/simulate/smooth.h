@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Curves from which a movement is composed. They are at least three times continuously
-// differentiable, so a simulated accelerometer shows no jump, and its slope has none either.
+// Curves from which movements are composed. They are at least three times continuously
+// differentiable, so the readings of a simulated accelerometer and their slope have no jumps.
 #pragma once
 
 #include <algorithm>
@@ -17,14 +17,14 @@ inline double rise(double x) {
   return x * x * x * x * (35.0 + x * (-84.0 + x * (70.0 - 20.0 * x)));
 }
 
-/// 1 in the middle, 0 outside of [0, 1]; three times continuously differentiable.
+/// 1 at x = 0.5, 0 outside [0, 1]; three times continuously differentiable.
 inline double bump(double x) {
   x = std::clamp(x, 0.0, 1.0);
   const double y = 4.0 * x * (1.0 - x);
   return y * y * y * y;
 }
 
-/// Rises from 0 to 1, as a body that speeds up for 0.42 of the time, keeps its speed, and slows
+/// Rises from 0 to 1, like a body that accelerates for 0.42 of the time, keeps its speed, and slows
 /// down. Four times continuously differentiable; the slope is at most 1.72.
 inline double glide(double x) {
   constexpr double ramp = 0.42, speed = 1.0 / (1.0 - ramp);
@@ -35,22 +35,22 @@ inline double glide(double x) {
   return speed * ramp * u * u * u * u * u * (7.0 + u * (-14.0 + u * (10.0 - 2.5 * u)));
 }
 
-/// A smooth minimum. It equals the smaller value if the two are much more than `width` apart, and
-/// lies half of `width` below them if they are equal. Differentiable any number of times.
+/// A smooth minimum. If the two values differ by much more than `width`, it equals the smaller
+/// value. If they are equal, it is half of `width` below them. Differentiable any number of times.
 inline double soft_min(double a, double b, double width) {
   return 0.5 * (a + b - std::sqrt((a - b) * (a - b) + width * width));
 }
 
-/// A curve along control values at even steps: a uniform B-spline of degree 5. It is four times
-/// continuously differentiable and never leaves the range of the controls. Outside of them it stays
-/// at the nearest control.
+/// A curve through the neighbourhood of control values at equal steps: a uniform B-spline of degree
+/// 5. It is four times continuously differentiable and stays within the range of the control
+/// values. Outside the controls it keeps the nearest value.
 class ControlTrack {
  public:
   ControlTrack(double step_s, std::vector<double> controls)
       : step_s_(step_s), controls_(std::move(controls)) {}
 
   double at(double t) const {
-    // Centred: at t = k step, control k has the greatest of the six weights.
+    // The spline is centred: at t = k step, control k has the greatest of the six weights.
     const double x = t / step_s_;
     const double floor = std::floor(x), u = x - floor;
     const auto first = static_cast<std::ptrdiff_t>(std::clamp(floor, -1e9, 1e9)) - 2;

@@ -13,15 +13,15 @@ namespace {
 
 using Offsets = std::array<Vec3, kinect_joint_count>;
 
-// Share of the variance between takes that belongs to the camera. The rest comes from the way a
-// person stands and is common to both cameras: two parallel Kinects differ by 0.7 to 1.8 cm, takes
-// by 1.8 to 5.2 cm.
+// Share of the variance between takes that differs from camera to camera. The rest comes from the
+// way a person stands and is the same for both cameras. Two parallel Kinects differ by 0.7 to 1.8
+// cm, takes by 1.8 to 5.2 cm.
 constexpr double camera_share = 0.15;
-// Share of the sd between takes that does not come from the poses (kinect_pose_error.h). Fitted to
-// PA-MPJPE.
+// Share of the standard deviation between takes that does not come from the poses
+// (kinect_pose_error.h). Fitted to PA-MPJPE, the mean joint error after a rigid fit.
 constexpr double left_of_take = 0.45;
 
-/// Standard normal draws for all joints, correlated along the tree of joints.
+/// Returns standard normal draws for all joints, correlated along the tree of joints.
 Offsets tree_of_draws(const RandomStream& random) {
   Offsets draws;
   for (const KinectJoint j : kinect_tree_order) {
@@ -33,7 +33,7 @@ Offsets tree_of_draws(const RandomStream& random) {
   return draws;
 }
 
-/// Offsets of this person in this take, in heading space, m.
+/// Returns the offsets of this person in this take, in the axes of the body's heading, m.
 Offsets standing_offsets(const KinectIds& ids) {
   const Offsets person = tree_of_draws(kinect_person_stream(KinectDraw::person_bias, ids));
   const Offsets take = tree_of_draws(kinect_take_stream(KinectDraw::take_bias, ids));
@@ -46,7 +46,7 @@ Offsets standing_offsets(const KinectIds& ids) {
     offsets[j] = noise.offset + (noise.person * person[j] + left_of_take * noise.take * of_take) /
                                     std::numbers::sqrt3;
   }
-  // The neck lies between its neighbours, as in kinect_coloured.cpp.
+  // The neck is the mean of its neighbours, as in kinect_coloured.cpp.
   offsets[neck] = 0.5 * (offsets[spine_shoulder] + offsets[head]);
   return offsets;
 }
@@ -55,7 +55,7 @@ Offsets standing_offsets(const KinectIds& ids) {
 constexpr double trunk_turned = 0.06, near_turned = 0.04, far_leg_turned = 0.05,
                  far_arm_turned = 0.05;
 
-/// Size of the error, m, of a joint of a body seen from the side.
+/// Returns the size of the error, m, of a joint of a body that is seen from the side.
 double turned_bias(const KinectLimb& place, bool left_is_far) {
   if (place.part == KinectPart::trunk) return trunk_turned;
   const bool far = (place.side == KinectSide::left) == left_is_far;
@@ -63,8 +63,8 @@ double turned_bias(const KinectLimb& place, bool left_is_far) {
   return place.part == KinectPart::arm ? far_arm_turned : far_leg_turned;
 }
 
-/// Directions in which the joints of a turned body are displaced: half along the optical axis, the
-/// rest at random.
+/// Returns the directions in which the joints of a turned body are displaced: half along the
+/// optical axis, half random.
 Offsets turned_directions(const RandomStream& random) {
   Offsets directions = tree_of_draws(random);
   for (Vec3& direction : directions) {
@@ -75,12 +75,12 @@ Offsets turned_directions(const RandomStream& random) {
   return directions;
 }
 
-// Factor for a back, of which the tracker sees less than of a side. Fitted to two Kinects in front
-// of a body that turns.
+// Factor for a body seen from the back, where the tracker recognises less than from the side.
+// Fitted to two Kinects in front of a body that turns.
 constexpr double of_back = 1.9;
 
-/// Share of the error for a turned body: small up to 45 degrees (limbs show 1.3 to 3.0 cm there), 1
-/// at 90 degrees.
+/// Returns the share of the error for a turned body. It is small up to 45 degrees, where limbs have
+/// errors of 1.3 to 3.0 cm, and 1 at 90 degrees.
 double turned_share(double yaw) {
   const double sideways = std::pow(std::sin(yaw), 2);
   return yaw <= std::numbers::pi / 2.0 ? sideways : of_back + (1.0 - of_back) * sideways;

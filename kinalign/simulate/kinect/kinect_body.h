@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The body as Kinect v2 reports it: 25 joints in the SDK's order, their parents, and the radii of
-// the body's parts.
+// The body as reported by Kinect v2: 25 joints in the order of the SDK, their parents, and the
+// radii of the parts of the body.
 #pragma once
 
 #include "kinalign/motion/kinect_joints.h"
@@ -11,7 +11,7 @@
 
 namespace kinalign {
 
-/// Numbers of the SDK's JointType; kinalign/motion/kinect_joints.h has the names.
+/// The numbers of JointType in the SDK. kinalign/motion/kinect_joints.h has the names.
 enum KinectJoint : std::uint8_t {
   spine_base,
   spine_mid,
@@ -48,11 +48,11 @@ struct KinectLimb {
   KinectJoint parent;  // the root's parent is the root itself
   KinectPart part;
   KinectSide side;
-  /// The same joint of the other side; a joint in the middle is its own partner.
+  /// The same joint on the other side. For a joint in the middle, it is the joint itself.
   KinectJoint partner;
 };
 
-/// Place of each joint in the body; [25] in JointType order.
+/// The position of each joint in the body; [25] in the order of JointType.
 inline constexpr std::array<KinectLimb, kinect_joint_count> kinect_limbs = [] {
   using enum KinectPart;
   using enum KinectSide;
@@ -80,13 +80,14 @@ static_assert([] {
   return true;
 }());
 
-/// True for joints that a tracker finds by the torso's surface: the trunk and the joints on it.
+/// Returns whether the tracker finds this joint by the surface of the torso: joints of the trunk,
+/// shoulders and hips.
 constexpr bool of_torso(KinectJoint joint) {
   return kinect_limbs[joint].part == KinectPart::trunk || joint == shoulder_left ||
          joint == shoulder_right || joint == hip_left || joint == hip_right;
 }
 
-/// All 25 joints, each after its parent.
+/// All 25 joints. Each joint follows its parent.
 inline constexpr std::array<KinectJoint, kinect_joint_count> kinect_tree_order{
     spine_base,     spine_mid,      spine_shoulder, neck,        head,
     shoulder_left,  elbow_left,     wrist_left,     hand_left,   hand_tip_left,
@@ -94,7 +95,7 @@ inline constexpr std::array<KinectJoint, kinect_joint_count> kinect_tree_order{
     hand_tip_right, thumb_right,    hip_left,       knee_left,   ankle_left,
     foot_left,      hip_right,      knee_right,     ankle_right, foot_right};
 
-/// Radii of the body's parts, m. Estimates.
+/// Radii of the parts of the body, m. Estimates.
 struct KinectRadii {
   double head = 0.10, trunk = 0.12, upper_arm = 0.05, forearm = 0.04, thigh = 0.08, shank = 0.055;
 };

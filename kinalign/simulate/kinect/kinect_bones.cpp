@@ -8,15 +8,15 @@ namespace kinalign {
 
 namespace {
 
-// Share of the deviation from a bone's mean length that the tracker reports. Chosen so that the sd
-// of bones on UI-PRMD equals the measured one.
+// Share of the deviation from a bone's mean length that the tracker reports. Chosen so that bone
+// lengths vary as much as measured on UI-PRMD.
 constexpr double let_through = 0.53;
 
 struct Bone {
   KinectJoint from, to;
 };
 
-// In the order from the trunk outwards.
+// The bones in order from the trunk outwards.
 constexpr std::array<Bone, 17> limb_bones = [] {
   return std::array<Bone, 17>{{{shoulder_left, elbow_left},
                                {elbow_left, wrist_left},
@@ -51,7 +51,7 @@ Lengths lengths(std::span<const double> joints, std::size_t t) {
   return found;
 }
 
-/// Mean excess of the bones' lengths over the true ones, m, over the take.
+/// Returns how much longer each bone is than the true bone, m, averaged over the take.
 Lengths mean_excess(const KinectScene& scene, std::span<const double> joints) {
   Lengths means{};
   for (std::size_t t = 0; t < scene.frames(); ++t) {
@@ -63,7 +63,7 @@ Lengths mean_excess(const KinectScene& scene, std::span<const double> joints) {
   return means;
 }
 
-/// Lengths with reduced deviation from the true length plus the mean excess.
+/// Returns the true lengths plus the mean excess plus the reduced deviation.
 Lengths held_lengths(const Lengths& now, const Lengths& truth, const Lengths& excess) {
   Lengths held{};
   for (std::size_t b = 0; b < held.size(); ++b) {
@@ -73,8 +73,8 @@ Lengths held_lengths(const Lengths& now, const Lengths& truth, const Lengths& ex
   return held;
 }
 
-/// Gives the bones of one frame [25,3] the lengths `held`, from the trunk outwards.
-/// The hips' width is set first, because the legs begin at the hips.
+/// Sets the lengths of the bones in one frame [25,3] to `held`, from the trunk outwards. The
+/// distance between the hips is set first, because the legs begin at the hips.
 void hold_frame(const Lengths& held, std::span<double> joints) {
   std::array<Vec3, kinect_joint_count> before;
   for (std::size_t j = 0; j < kinect_joint_count; ++j) before[j] = vec3(joints, j);

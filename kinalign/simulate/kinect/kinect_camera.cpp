@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Applies the steps of the model in their order; each step has a file of its own.
+// Applies the steps of the model in their order. Each step has its own file.
 #include "kinalign/simulate/kinect/kinect_camera.h"
 
 #include "kinalign/simulate/kinect/kinect_bias.h"
@@ -14,8 +14,8 @@ namespace kinalign {
 
 namespace {
 
-/// Visibility of a joint. The tracker guesses legs below the image; other joints outside of it are
-/// missing.
+/// Returns the visibility of a joint. If legs are below the image, the tracker guesses their
+/// positions. Other joints outside the image are missing.
 Unseen seen_at(const Vec3& place, KinectPart part, const KinectView& view) {
   const double z = place.z();
   if (!(z >= view.nearest && z <= view.farthest)) return Unseen::out_of_view;
@@ -24,7 +24,7 @@ Unseen seen_at(const Vec3& place, KinectPart part, const KinectView& view) {
   return part == KinectPart::leg && place.y() < 0.0 ? Unseen::below_image : Unseen::out_of_view;
 }
 
-/// Visibility of each joint [T,25].
+/// Returns the visibility of each joint [T,25].
 std::vector<Unseen> unseen_joints(const KinectScene& scene, const KinectOptions& options) {
   std::vector<Unseen> unseen(scene.known.size(), Unseen::no);
   for (std::size_t i = 0; i < unseen.size(); ++i) {
@@ -38,7 +38,7 @@ std::vector<Unseen> unseen_joints(const KinectScene& scene, const KinectOptions&
   return unseen;
 }
 
-// Without its trunk there is no body. One unseen joint of the three does not matter.
+// No body is reported without its trunk. One unseen joint of these three is tolerated.
 bool body_is_there(std::span<const Unseen> unseen) {
   int out = 0;
   for (const KinectJoint j : {spine_base, spine_mid, spine_shoulder}) {
@@ -64,9 +64,9 @@ void leave_out(std::span<const Unseen> unseen, PointFrames& frames) {
 
 PointFrames simulate_kinect(const KinectJointsAt& joints_at, std::span<const KinectTick> ticks,
                             const KinectOptions& options, const KinectIds& ids) {
-  // The order matters: bones keep their length before white noise is added, and hidden joints are
-  // guessed from positions that have all other errors. Exchanged sides come last, because the
-  // labels are wrong, not the positions.
+  // The order matters. Bone lengths are corrected before white noise is added. Hidden joints are
+  // guessed from positions that contain all other errors. Sides are exchanged last, because only
+  // the labels are wrong then, not the positions.
   const KinectScene scene = kinect_scene(joints_at, ticks, options);
   const KinectParts& parts = options.parts;
   PointFrames frames{{}, scene.truth, std::vector<Tracking>(scene.known.size(), Tracking::tracked)};

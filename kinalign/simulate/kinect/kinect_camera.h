@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulated Kinect v2: the output of the body-tracking SDK for a body whose true joints are known
-// at any time. Model, measurements and the comparison with real recordings: docs/kinect_noise*.md.
-// Time is virtual; the same seed and ids give the same bytes.
+// A simulated Kinect v2. From the true joints of a body it computes the output of the body-tracking
+// SDK. docs/kinect_noise.md describes the model, the measurements and the comparison with real
+// recordings. Time is simulated; the same seed and ids give the same bytes.
 #pragma once
 
 #include "kinalign/motion/rigid_fit.h"
@@ -15,14 +15,15 @@
 
 namespace kinalign {
 
-/// The volume in which a camera sees joints: published range and field of view of 70.6 x 60
+/// The volume in which a camera sees joints: published range, and a field of view of 70.6 x 60
 /// degrees.
 struct KinectView {
   double nearest = 0.5, farthest = 4.5;  // m along the optical axis
   double slope_x = 0.708, slope_y = 0.577;
 };
 
-/// Parts of the model, each of which can be switched off. Without all of them the joints are true.
+/// Parts of the model. Each part can be switched off; if all are off, the reported joints are the
+/// true ones.
 struct KinectParts {
   bool uneven_stamps = true;  // off: a frame every 33.33 ms
   bool bias = true;
@@ -42,31 +43,33 @@ struct KinectOptions {
   KinectParts parts{};
   double drop_rate = 0.005;     // share of frames that are dropped
   double drift_ppm = 0.0;       // drift of the sensor's clock; 1: 1 ppm fast
-  std::int64_t first_tick = 0;  // its reading when the sensor begins, 100 ns
+  std::int64_t first_tick = 0;  // the clock's reading when the sensor starts, 100 ns
 };
 
-/// Names the random draws, besides the seed. Two cameras on one take share person and take.
+/// Selects the random draws, together with the seed. Two cameras on one take have the same person
+/// and take.
 struct KinectIds {
   std::uint64_t seed = 1, person = 1, take = 1, camera = 0;
 };
 
 /// One frame of the sensor.
 struct KinectTick {
-  std::int64_t number = 0;  // number of the frame; dropped ones are counted
+  std::int64_t number = 0;  // number of the frame; dropped frames are counted too
   double seconds = 0.0;     // true time, s
-  std::int64_t device = 0;  // 100 ns on the sensor's own clock
+  std::int64_t device = 0;  // the sensor's own clock, 100 ns
 };
 
-/// The sensor's frames up to `end_s`. The first one is drawn within a frame after `begin_s`.
+/// Returns the sensor's frames up to `end_s`. The time of the first frame is drawn within one frame
+/// period after `begin_s`.
 std::vector<KinectTick> kinect_ticks(const KinectOptions& options, const KinectIds& ids,
                                      double begin_s, double end_s);
 
-/// Fills the 25 true joints [25,3] m at a time, s, in a world with y up.
+/// Fills the 25 true joints [25,3] m at a time in s, in a world with y up.
 using KinectJointsAt = std::function<void(double seconds, std::span<double> joints)>;
 
-/// The sensor's output for one body: [T,25,3] m in camera space. Stamps are its device ticks,
-/// counted from the epoch. If the trunk is out of view there is no body, and all 25 joints are
-/// missing.
+/// Returns the sensor's output for one body: [T,25,3] m in camera space. The stamps are the
+/// sensor's clock readings since the epoch. If the trunk is out of view, no body is reported and
+/// all 25 joints are missing.
 PointFrames simulate_kinect(const KinectJointsAt& joints_at, std::span<const KinectTick> ticks,
                             const KinectOptions& options, const KinectIds& ids);
 

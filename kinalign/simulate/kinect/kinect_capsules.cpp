@@ -7,24 +7,25 @@ namespace kinalign {
 
 namespace {
 
-// Anything less than this far before a joint is the joint's own flesh, m. An estimate.
+// A surface that is less than this distance before a joint belongs to the joint itself, m. An
+// estimate.
 constexpr double own_flesh = 0.05;
-// Shoulders lie inside the trunk's capsule or at its side, so only the core of the trunk, well
-// before them, hides one. Estimates: with the whole capsule, a narrow person's shoulders were
-// hidden from the front.
+// Shoulders are inside the trunk's capsule or at its side. Therefore only the core of the trunk
+// hides a shoulder, and only if it is well before the shoulder. Estimates: with the whole capsule,
+// a narrow person's shoulders were hidden from the front.
 constexpr double shoulder_flesh = 0.14, core = 0.4;
 
 bool is_shoulder(KinectJoint joint) { return joint == shoulder_left || joint == shoulder_right; }
 
-/// True if the joint belongs to the capsule's part of the body. Hands belong to forearms, feet to
-/// shanks, hips and spine to the trunk. Shoulders don't: the trunk hides the far shoulder of a
-/// turned body.
+/// Returns whether the joint belongs to the capsule's part of the body. Hands belong to forearms,
+/// feet to shanks, hips and spine to the trunk. Shoulders do not belong to the trunk, because the
+/// trunk hides the far shoulder of a turned body.
 bool belongs(KinectJoint joint, const KinectCapsule& capsule) {
   if (joint == capsule.from || joint == capsule.to) return true;
   const KinectLimb& place = kinect_limbs[joint];
   const bool hip = joint == hip_left || joint == hip_right;
-  // The tracker finds these joints by the torso's whole surface; an arm in front of it hides too
-  // little.
+  // The tracker finds these joints by the whole surface of the torso. An arm before the torso hides
+  // only a small part of it.
   if (of_torso(joint) && kinect_limbs[capsule.to].part == KinectPart::arm) return true;
   if (capsule.to == head) return place.part == KinectPart::trunk || is_shoulder(joint);
   if (capsule.from == spine_base) return place.part == KinectPart::trunk ? joint != head : hip;
@@ -37,15 +38,15 @@ bool belongs(KinectJoint joint, const KinectCapsule& capsule) {
                                                                    : false;
 }
 
-/// Parameter of a point on a segment, clamped to [0, 1]; 0 on a segment of no length.
+/// Returns the parameter of a point on a segment, clamped to [0, 1]; 0 on a segment without length.
 double along(double way, double length_squared) {
   return length_squared > 1e-12 ? std::clamp(way / length_squared, 0.0, 1.0) : 0.0;
 }
 
 }  // namespace
 
-// First the nearest points of the two lines, then each parameter is clamped to its segment.
-// For parallel segments the search begins at a0.
+// Finds the nearest points of the two lines, then clamps each parameter to its segment. If the
+// segments are parallel, the search begins at a0.
 NearestOnSegments nearest_on_segments(const Vec3& a0, const Vec3& a1, const Vec3& b0,
                                       const Vec3& b1) {
   const Vec3 a = a1 - a0, b = b1 - b0, r = a0 - b0;
@@ -66,8 +67,8 @@ std::optional<Vec3> hidden_behind(std::span<const double> joints, KinectJoint jo
   const double distance = place.norm();
   const double flesh = is_shoulder(joint) ? shoulder_flesh : own_flesh;
   if (distance <= flesh) return std::nullopt;
-  // The ray ends a little before the joint, so that the joint's own part of the body does not hide
-  // it.
+  // The ray ends shortly before the joint, so that the part of the body around the joint does not
+  // hide it.
   const Vec3 before = place * (1.0 - flesh / distance);
   for (const KinectCapsule& capsule : kinect_capsules) {
     if (belongs(joint, capsule)) continue;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The body as capsules, and a test whether one of them hides a joint from a camera.
+// The body as capsules (cylinders with round ends), and a test whether a capsule hides a joint from
+// the camera.
 #pragma once
 
 #include "kinalign/motion/arrays.h"
@@ -34,13 +35,14 @@ struct NearestOnSegments {
   Vec3 on_first = Vec3::Zero(), on_second = Vec3::Zero();
 };
 
-/// The nearest points of the segments a0 a1 and b0 b1 (Ericson, «Real-Time Collision Detection»,
-/// 2005, section 5.1.9).
+/// Returns the nearest points of the segments a0 a1 and b0 b1 (Ericson, «Real-Time Collision
+/// Detection», 2005, section 5.1.9).
 NearestOnSegments nearest_on_segments(const Vec3& a0, const Vec3& a1, const Vec3& b0,
                                       const Vec3& b1);
 
-/// The point that hides a joint, on the axis of a capsule; absent if the joint is visible. `joints`
-/// [25,3] m, with the camera at the origin. Parts to which a joint belongs don't hide it.
+/// Returns the point on the axis of a capsule that hides a joint; absent if the joint is visible.
+/// `joints` [25,3] m, with the camera at the origin. A joint is not hidden by the part of the body
+/// to which it belongs.
 std::optional<Vec3> hidden_behind(std::span<const double> joints, KinectJoint joint,
                                   const KinectRadii& radii);
 

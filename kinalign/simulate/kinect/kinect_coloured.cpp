@@ -12,31 +12,31 @@ namespace kinalign {
 
 namespace {
 
-// Sizes in units of the measured sd within a take. Fitted to the sd of each joint, to the
-// autocorrelation at 5 and 15 frames, and to the part of a residual that other repetitions predict
-// at the nearest pose.
+// Sizes in units of the measured standard deviation within a take. Fitted to three figures: the
+// standard deviation of each joint, the autocorrelation at 5 and 15 frames, and the part of an
+// error that other repetitions predict at the nearest pose.
 constexpr double pose_share = 1.3, moving_share = 0.8;
-constexpr double at_rest = 0.0014;  // m, for a still body: the length of the thigh varies by 0.6 %
+constexpr double at_rest = 0.0014;  // m, for a still body; the length of the thigh varies by 0.6 %
 constexpr std::int64_t warm_up = 300;  // number of frames: four time constants of a joint at rest
 
-// Two cameras see the same effect of the pose on the tracker: these shares of the variance are
-// common. If all draws were independent, two parallel cameras in front of a stepping person would
-// differ by 5.8 cm instead of 3.3.
+// Two cameras see the same effect of the pose on the tracker, so these shares of the variance are
+// common to both. With independent draws, two parallel cameras in front of a stepping person would
+// differ by 5.8 cm; measured are 3.3 cm.
 constexpr double pose_shared = 0.9, moving_shared = 0.77;
 
-// The clock of the moving part follows the joint's own speed and hardly runs at rest. With a clock
-// of constant rate, joints at rest on a moving body would vary by 0.7 mm; 0.13 are measured.
+// The time of the moving part advances with the joint's own speed and almost stops at rest. With
+// constant time steps, joints at rest on a moving body would vary by 0.7 mm; measured are 0.13 mm.
 constexpr double rest_rate = 0.15, most_rate = 1.3;
 constexpr double full_rate_speed = 0.165;  // m/s
 constexpr double with_pose = 0.05;
 
-/// Rate of the process's clock for a joint's speed and change of pose, m/s.
+/// Returns the rate of the process's time for a joint's speed and change of pose, m/s.
 double rate(double speed, double stir) {
   const double moving = (1.0 - with_pose) * speed + with_pose * stir;
   return std::min(rest_rate + moving / full_rate_speed, most_rate);
 }
 
-/// One process for each joint and axis; the draws are correlated along the tree of joints.
+/// One process for each joint and axis. The draws are correlated along the tree of joints.
 class WanderingBody {
  public:
   explicit WanderingBody(const KinectIds& ids)
@@ -45,11 +45,11 @@ class WanderingBody {
         of_both_(std::sqrt(moving_shared)),
         of_one_(std::sqrt(1.0 - moving_shared)) {}
 
-  /// Call for each frame in turn, from -warm_up on.
+  /// Call for each frame in order, beginning at -warm_up.
   void step(std::int64_t frame, std::span<const double> speeds, std::span<const double> stir) {
     const auto k = static_cast<std::uint64_t>(frame + warm_up) * channels;
     for (const KinectJoint j : kinect_tree_order) {
-      // The neck is the mean of its neighbours, below.
+      // The neck is computed below, as the mean of its neighbours.
       if (j == neck) continue;
       const KinectJointNoise& noise = kinect_joint_noise()[j];
       const double x = SmoothNoise::per_tau * kinect_frame_s * rate(speeds[j], stir[j]);
@@ -67,7 +67,7 @@ class WanderingBody {
  private:
   static constexpr std::size_t channels = 3 * kinect_joint_count;
 
-  /// Draws for joint j, after those of the joint on which they depend.
+  /// Draws the numbers for joint j. The joint with which it is correlated must be drawn before.
   void draw(KinectJoint j, std::uint64_t k) {
     const KinectJointNoise& noise = kinect_joint_noise()[j];
     const double own = std::sqrt(1.0 - noise.kinship * noise.kinship);
@@ -88,8 +88,8 @@ class WanderingBody {
   std::array<SmoothNoise, channels> noises_{};
 };
 
-/// Size of a take's errors relative to the usual size, log-normal with rms 1. In UI-PRMD, five of
-/// 64 takes hold two fifths (feet) to all (spine) of the residuals above 10 cm.
+/// Returns the size of a take's errors relative to the usual size, log-normal with rms 1. In
+/// UI-PRMD, five of 64 takes contain 40 % (feet) to 100 % (spine) of the errors above 10 cm.
 std::array<double, kinect_joint_count> take_sizes(const KinectIds& ids) {
   const RandomStream random = kinect_take_stream(KinectDraw::take_size, ids);
   std::array<double, kinect_joint_count> draws{}, sizes{};
@@ -127,7 +127,7 @@ void add_coloured_noise(const KinectScene& scene, const KinectIds& ids, std::spa
     const std::span<const double> speeds(&scene.speeds[t * kinect_joint_count], kinect_joint_count);
     const std::span<const double> stir(&scene.stir[t * kinect_joint_count], kinect_joint_count);
     const BodyHeading& heading = scene.headings[t];
-    // After a long gap the process can't be told from a new one.
+    // After a long gap the process is as different as a new one.
     if (number - next >= warm_up) body = WanderingBody(ids);
     for (next = std::max(next, number - warm_up); next <= number; ++next)
       body.step(next, speeds, stir);

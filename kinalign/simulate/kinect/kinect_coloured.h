@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slow errors: a smooth error of each joint. One part of it depends on the pose, the other on the
-// time, and it grows as the pose changes. Also the tracker's tendency to keep the lengths of bones.
+// Slow, smooth errors of each joint. One part depends on the pose, the other on time; the second
+// grows when the pose changes. This file also has the tracker's tendency to keep bone lengths
+// constant.
 #pragma once
 
 #include "kinalign/simulate/kinect/kinect_scene.h"
@@ -8,18 +9,18 @@
 namespace kinalign {
 
 /// A Gaussian process of unit variance and third order: three equal first-order filters in series.
-/// Its autocorrelation is (1 + x + x^2 / 3) exp(-x) with x = 2.904 t / tau, which is 1/e at tau.
-/// Its clock may run at a different rate in each step; the variance stays the same.
+/// Its autocorrelation is (1 + x + x^2 / 3) exp(-x) with x = 2.904 t / tau, which is 1/e at t =
+/// tau. Its time may run at a different rate in each step; the variance stays the same.
 struct SmoothNoise {
-  Vec3 state = Vec3::Zero();  // the value and its first and second derivative by x
+  Vec3 state = Vec3::Zero();  // the value and its first and second derivative with respect to x
 
   double value() const { return state[0]; }
   static constexpr double per_tau = 2.904;
 };
 
-/// The transition over a step of x, with two draws. It neglects the part of the covariance P - A P
-/// A^T that remains once the derivatives are known: 1e-4 of the variance for the usual x of 0.3,
-/// 0.2 % for 0.55.
+/// The transition over a step of x, with two random draws. It neglects a part of the covariance P -
+/// A P A^T, namely the part that is left when the derivatives are known. That part is 1e-4 of the
+/// variance for the usual x of 0.3, and 0.2 % for 0.55.
 class SmoothStep {
  public:
   explicit SmoothStep(double x);
@@ -38,10 +39,10 @@ inline constexpr double kinect_frame_s = 1.0 / 30.0;
 /// Adds the slow errors to `joints` [T,25,3] m.
 void add_coloured_noise(const KinectScene& scene, const KinectIds& ids, std::span<double> joints);
 
-/// Moves the length error of each limb's bone, and of the hips' width, towards its mean over the
-/// take. The error is taken against the truth, because the markers' bones stretch with the pose
-/// (upper arms by centimetres): keeping those lengths constant would add an error that depends on
-/// the pose.
+/// Moves the length error of each limb bone, and of the distance between the hips, towards its mean
+/// over the take. The error is the difference from the true length. True lengths vary, because
+/// bones between markers stretch with the pose (upper arms by centimetres). Constant lengths would
+/// therefore add an error that depends on the pose.
 void hold_bones(const KinectScene& scene, std::span<double> joints);
 
 }  // namespace kinalign

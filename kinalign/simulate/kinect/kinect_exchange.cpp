@@ -17,25 +17,25 @@ enum class Group : std::uint8_t { body, legs, arms };
 
 struct Shares {
   Group group;
-  double sideways;  // share of frames, if left and right lie one behind the other
+  double sideways;  // share of frames, if one side is exactly behind the other
 };
-// Fitted to two Kinects at 0, 45 and 90 degrees, one of which at times looks along the shoulders.
+// Fitted to two Kinects at 0, 45 and 90 degrees; one of them sometimes looks along the shoulders.
 constexpr std::array<Shares, 3> groups{
     {{Group::body, 0.07}, {Group::legs, 0.16}, {Group::arms, 0.14}}};
-// Labels are lost as limbs pass one another, less often on a body that stands: at 90 degrees the
-// two Kinects differ by 9.8 cm while it stands and by 13.6 cm while it steps.
+// The tracker confuses labels when limbs pass each other, and less often if the body stands. At 90
+// degrees the two Kinects differ by 9.8 cm while it stands and by 13.6 cm while it steps.
 constexpr double still_share = 0.4, full_bustle = 0.25;  // m/s
-// Labels stay right for this long while a turning body passes through its profile. An estimate.
+// While a turning body is seen from the side, labels stay right for this long. An estimate.
 constexpr double labels_hold_s = 2.0;
-// Sides that are farther apart across the view than this are not confused, m.
+// If the sides are farther apart in the image than this, they are not confused, m.
 constexpr double distinct = 0.25;
 
-// Estimates: durations are log-normal with a median of 0.4 s; back_misread is the share of turns of
-// the back that are misread.
+// Estimates: durations are log-normal with a median of 0.4 s. back_misread is the probability that
+// a turned back is taken for a front.
 constexpr double median_s = 0.4, spread = 0.5;
 constexpr double mean_s = median_s * 1.1331484530668263;  // exp(spread^2 / 2)
 constexpr double back_from = 110.0 * std::numbers::pi / 180.0;
-constexpr double turn_s = 4.0;  // cameras that see a back within this time see the same turn
+constexpr double turn_s = 4.0;  // cameras that see a back within this time make the same error
 constexpr double back_misread = 0.04;
 
 bool in_group(KinectLimb place, Group group) {
@@ -44,7 +44,7 @@ bool in_group(KinectLimb place, Group group) {
   return (group == Group::arms) == (place.part == KinectPart::arm);
 }
 
-/// Swaps left and right of a group in frame t.
+/// Exchanges left and right of a group in frame t.
 void exchange(PointFrames& frames, std::size_t t, Group group) {
   for (std::size_t j = 0; j < kinect_joint_count; ++j) {
     const KinectLimb& place = kinect_limbs[j];
@@ -58,8 +58,8 @@ void exchange(PointFrames& frames, std::size_t t, Group group) {
   }
 }
 
-/// Measure of how far left and right of a group lie one behind the other in the camera's view: 1 if
-/// they do, 0 from `distinct` on.
+/// Returns 1 if left and right of a group are behind each other in the camera's view, and 0 if they
+/// are at least `distinct` apart.
 double confusable(std::span<const double> joints, Group group) {
   double apart = 0.0, pairs = 0.0;
   for (std::size_t j = 0; j < kinect_joint_count; ++j) {
@@ -74,24 +74,25 @@ double confusable(std::span<const double> joints, Group group) {
   return std::pow(std::max(0.0, 1.0 - apart / pairs / distinct), 2);
 }
 
-/// Cameras side by side make the same mistakes: they draw the same number at the same time.
+/// Cameras side by side make the same errors, so they use the same random number at the same time.
 std::uint64_t shared_key(double seconds, double each_s) {
   return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(seconds / each_s)));
 }
 
-/// Periods of exchange. Their lengths and gaps are drawn so that they cover the wanted share of
-/// frames.
+/// Periods in which sides are exchanged. Their lengths and the times between them are drawn so that
+/// they cover a given share of the frames.
 class Spells {
  public:
   Spells(RandomStream random, std::uint64_t lane) : random_(random), lane_(lane) {}
 
-  /// True during a period. `likeness`: result of confusable(); its mean over labels_hold_s counts.
+  /// Returns whether the frame is in such a period. `likeness`: result of confusable(), averaged
+  /// over labels_hold_s.
   bool step(const KinectTick& tick, double step_s, double share, double likeness) {
     if (!lasted_) lasted_ = likeness;
     *lasted_ += (likeness - *lasted_) * step_s / labels_hold_s;
     if (tick.seconds < until_) return true;
     const std::uint64_t k = shared_key(tick.seconds, kinect_frame_s);
-    // The rate at which periods must begin so that they cover this share of the frames.
+    // Rate of beginning periods at which they cover this share of the frames.
     const double now = share * *lasted_;
     const double rate = now / ((1.0 - now) * mean_s);
     if (!random_.chance(k, lane_, rate * step_s)) return false;
@@ -116,7 +117,7 @@ void exchange_sides(const KinectScene& scene, const KinectIds& ids, PointFrames&
   for (std::size_t t = 0; t < scene.frames(); ++t) {
     const KinectTick& tick = scene.ticks[t];
     const double yaw = scene.headings[t].yaw;
-    // A gap in the frames must not begin a period for certain.
+    // Without the limit, a gap in the frames would always begin a period.
     const double step_s = std::min(tick.seconds - before, 0.1);
     before = tick.seconds;
     const double moved =

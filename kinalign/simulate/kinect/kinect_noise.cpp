@@ -9,8 +9,8 @@ constexpr double cm = 1e-2, mm = 1e-3;
 
 using Table = std::array<KinectJointNoise, kinect_joint_count>;
 
-// Fitted joint by joint: `white` to the second differences by speed, `twitch` to the
-// autocorrelation at one frame, `spread` to the share of residuals above 10 cm.
+// Fitted for each joint: `white` to the second differences at different speeds, `twitch` to the
+// autocorrelation at one frame, `spread` to the share of errors above 10 cm.
 constexpr double slow_limbs = 0.33, quick_feet = 0.23;  // s
 constexpr double usual_tail = 3.0, feet_tail = 1.5;
 
@@ -19,7 +19,7 @@ struct Bias {
   double person, take;
 };
 
-/// A joint with the usual values; lengths are in cm.
+/// Returns a joint with the usual values; lengths are in cm.
 KinectJointNoise joint(KinectJoint source, double kinship, const Bias& bias, const Vec3& within) {
   return {.source = source,
           .kinship = kinship,
@@ -36,25 +36,26 @@ KinectJointNoise joint(KinectJoint source, double kinship, const Bias& bias, con
           .twitch = 0.5};
 }
 
-// Sizes of the white noise: at rest, mm, and for each m/s of speed, mm.
+// Sets the sizes of the white noise: at rest, mm, and for each m/s of speed, mm.
 KinectJointNoise with_white(KinectJointNoise noise, double rest_mm, double speed_mm) {
   noise.white = rest_mm * mm;
   noise.white_speed = speed_mm * mm;
   return noise;
 }
 
-// Feet and ankles: their errors are quicker, have heavier tails and differ more between takes.
+// For feet and ankles: their errors change faster, have heavier tails and differ more between
+// takes.
 KinectJointNoise on_the_ground(KinectJointNoise noise) {
   noise.tau = quick_feet;
   noise.tail = feet_tail;
   noise.twitch = 10.0;
   noise.spread = 0.7;
-  noise.white_stir = 0.7 * mm;  // a foot at rest trembles while its leg bends
+  noise.white_stir = 0.7 * mm;  // a foot at rest trembles while the leg bends
   return with_white(noise, 0.2, 1.3);
 }
 
-/// A joint of the hand. Hands were not measured against Vicon, so they get the wrist's figures
-/// times `factor`.
+/// Returns a joint of the hand. Hands were not measured against Vicon, so they have the wrist's
+/// figures times `factor`.
 KinectJointNoise of_hand(const KinectJointNoise& wrist, KinectJoint source, double factor) {
   KinectJointNoise noise = wrist;
   noise.source = source;
@@ -66,7 +67,7 @@ KinectJointNoise of_hand(const KinectJointNoise& wrist, KinectJoint source, doub
   return noise;
 }
 
-// Offsets and sizes in cm. A joint is filled before the joints that are correlated with it.
+// Offsets and sizes in cm. A joint is set before the joints that are correlated with it.
 void put_trunk(Table& t) {
   t[spine_base] = joint(spine_base, 0.0, {{0.0, -1.9, -2.8}, 2.4, 2.8}, {1.2, 1.5, 1.4});
   t[spine_mid] = joint(spine_base, 0.6, {{0.0, -3.6, -4.1}, 1.8, 2.5}, {0.9, 1.2, 1.4});
@@ -75,11 +76,11 @@ void put_trunk(Table& t) {
   t[spine_shoulder].spread = 0.7;
   t[head].spread = 0.85;
   t[spine_mid].twitch = t[spine_shoulder].twitch = t[head].twitch = 1.3;
-  // The neck is the mean of its neighbours and has no draw of its own.
+  // The neck is the mean of its neighbours and has no draws.
   t[neck] = joint(neck, 0.0, {}, Vec3::Zero());
 }
 
-/// Fills the arms; hands follow from the wrists.
+/// Sets the arms; hands are computed from the wrists.
 void put_arms(Table& t) {
   t[shoulder_left] = joint(spine_shoulder, 0.5, {{0.6, -3.5, 2.1}, 1.4, 3.7}, {1.2, 1.4, 1.5});
   t[shoulder_right] = joint(spine_shoulder, 0.5, {{-2.2, -2.7, 1.0}, 1.9, 3.7}, {1.5, 1.5, 1.4});
@@ -102,7 +103,7 @@ void put_arms(Table& t) {
   t[thumb_right] = with_white(of_hand(t[wrist_right], hand_right, 1.5), 3.0, 8.0);
 }
 
-/// Fills the legs; ankles and feet stand on the ground, which has its own figures.
+/// Sets the legs; ankles and feet have the figures of on_the_ground().
 void put_legs(Table& t) {
   t[hip_left] = joint(spine_base, 0.93, {{-2.1, -1.8, 0.8}, 2.7, 2.8}, {1.4, 1.5, 1.5});
   t[hip_right] = joint(spine_base, 0.93, {{2.6, -2.0, 0.3}, 2.3, 2.6}, {1.3, 1.5, 1.5});

@@ -12,24 +12,26 @@ namespace kinalign {
 
 namespace {
 
-constexpr int patience = 2;  // number of frames that a joint may be hidden without being marked
-constexpr double gives_up = 0.93;  // probability that the tracker guesses; otherwise it follows the
-                                   // object that hides the joint
+constexpr int patience = 2;  // number of frames for which a joint may be hidden before it is marked
+constexpr double gives_up = 0.93;  // probability that the tracker guesses the position; otherwise
+                                   // the tracker reports the hiding object
 constexpr double way_per_frame = 1.0 / 3.0;  // share of the way to the guess
 constexpr double guess_tau_s = 0.8;
-// Probability, for a frame of a visible joint, that it is marked for one or two frames.
+// Probability that a visible joint is marked for one or two frames, per frame.
 constexpr double doubt = 0.003;
 
-// A guess is wrong by an angle: an sd for each axis, times the bone's length. Fitted to the far
-// side of a body that stands and steps at 90 degrees: rms of far arm, far leg and all joints.
+// A guess is wrong by an angle, times the length of the bone. The figures are the sd for each axis.
+// Fitted to the far side of a body that stands and steps at 90 degrees: the rms of the far arm, the
+// far leg and all joints.
 struct GuessNoise {
   double at_entry, process;  // rad
 };
-constexpr double of_parent = 0.7;     // share of a guessed parent's error; fitted to the same data
-constexpr double longest_bone = 1.0;  // m; nothing longer is a bone
+// Share of the parent's error that is added if the parent is guessed too; fitted to the same data.
+constexpr double of_parent = 0.7;
+constexpr double longest_bone = 1.0;      // m; a longer distance is not a bone
 constexpr double still_limb_share = 0.3;  // a still limb is guessed better
 
-// A guess of the trunk has no slow part of the error.
+// The guess of a trunk joint has no slow error.
 GuessNoise guess_noise(KinectPart part) {
   switch (part) {
     case KinectPart::arm:
@@ -42,24 +44,24 @@ GuessNoise guess_noise(KinectPart part) {
   return {0.1, 0.0};
 }
 
-/// The tracker's memory of one joint.
+/// The state that the tracker keeps for one joint.
 struct Memory {
-  int hidden = 0;             // number of frames in a row
-  bool infers = false;        // false: it follows the hiding object, once patience is over
+  int hidden = 0;             // number of consecutive frames in which the joint is hidden
+  bool infers = false;        // true: the position is guessed; false: the hiding object is reported
   double away = 0.0;          // share of the way to the guess that is reached
-  double back = 1.0;          // share of that way for each frame once the joint is seen again
-  int doubted = 0;            // number of frames that are still to be marked
-  Vec3 bone = Vec3::Zero();   // m, from the parent, in heading space, when last seen
-  Vec3 entry = Vec3::Zero();  // draw at the beginning of the guess, sd 1
+  double back = 1.0;          // share of that way per frame, when the joint is seen again
+  int doubted = 0;            // number of further frames that are marked
+  Vec3 bone = Vec3::Zero();   // m, from the parent, in the axes of the heading, when last seen
+  Vec3 entry = Vec3::Zero();  // random draw at the beginning of a guess, sd 1
   std::array<SmoothNoise, 3> wandering{};  // slow part of the error, sd 1
   Vec3 guess = Vec3::Zero();               // m, camera space, without its error
-  Vec3 error = Vec3::Zero();               // m, heading space, error of the guess
+  Vec3 error = Vec3::Zero();               // m, axes of the heading, error of the guess
 
   Vec3 wander() const { return {wandering[0].value(), wandering[1].value(), wandering[2].value()}; }
 };
 
-/// Goes through the joints from the trunk outwards, because a guess begins at the guess of its
-/// parent.
+/// Processes the joints from the trunk outwards, because the guess of a joint depends on the guess
+/// of its parent.
 class Tracker {
  public:
   Tracker(const KinectScene& scene, const KinectOptions& options, const KinectIds& ids,
@@ -74,7 +76,7 @@ class Tracker {
     }
   }
 
-  /// Whether a joint is hidden is decided by the true body; the positions that are moved have all
+  /// The true body decides whether a joint is hidden. The positions that are moved contain all
   /// earlier errors.
   void frame(std::size_t t, std::span<const Unseen> unseen) {
     const std::span<const double> truth(&scene_.truth[3 * kinect_joint_count * t],
@@ -88,13 +90,13 @@ class Tracker {
   }
 
  private:
-  /// Draws go by the frame's number, so a dropped frame does not shift later draws.
+  /// Draws use the number of the frame, so a dropped frame does not change later draws.
   std::uint64_t counter(std::size_t t, KinectJoint j) const {
     return static_cast<std::uint64_t>(scene_.ticks[t].number) * kinect_joint_count + j;
   }
 
-  /// One joint in one frame. The reported position moves to the guess while the joint is hidden,
-  /// and back when it is seen again.
+  /// Processes one joint in one frame. While the joint is hidden, the reported position moves to
+  /// the guess. When the joint is seen again, the position moves back.
   void step(std::size_t t, KinectJoint j, const std::optional<Vec3>& hider, bool below) {
     Memory& memory = memories_[j];
     const std::uint64_t k = counter(t, j);
@@ -103,7 +105,7 @@ class Tracker {
     if (hider || below) {
       if (++memory.hidden == patience + 1) enter(memory, j, k, below);
     } else {
-      // Back within one, two or three frames.
+      // The position is back after one, two or three frames.
       if (memory.hidden > patience)
         memory.back = 1.0 / (1.0 + std::floor(3.0 * random_.uniform(k, 1)));
       memory.hidden = 0;
@@ -118,7 +120,7 @@ class Tracker {
     mark(t, j, lost && memory.infers, k);
   }
 
-  /// The process also runs while it is not used, so that it does not start anew at each guess.
+  /// The process also runs while no guess is made, so that it does not begin anew at each guess.
   void wander(Memory& memory, std::uint64_t k) {
     for (std::size_t a = 0; a < 3; ++a) {
       const auto [first, second] = random_.normals(k, 2 + 2 * a);
@@ -127,12 +129,12 @@ class Tracker {
   }
 
   void enter(Memory& memory, KinectJoint j, std::uint64_t k, bool below) {
-    const bool torso = of_torso(j);  // too large to be taken for another part
+    const bool torso = of_torso(j);  // the torso is too large to be mistaken for another object
     memory.infers = below || torso || random_.chance(k, 0, gives_up);
     memory.entry = Vec3(random_.normal(k, 8), random_.normal(k, 10), random_.normal(k, 12));
   }
 
-  /// Keeps the joint's position relative to its parent, from which a later guess starts.
+  /// Stores the joint's position relative to its parent, for a later guess.
   void remember(std::size_t t, KinectJoint j, const Vec3& seen) {
     Memory& memory = memories_[j];
     memory.guess = seen;
@@ -140,8 +142,7 @@ class Tracker {
         scene_.headings[t].axes.transpose() * (seen - memories_[kinect_limbs[j].parent].guess);
   }
 
-  /// Computes the guess: the hiding object, or the parent's guess plus the bone, each with an
-  /// error.
+  /// Computes the guess: the hiding object, or the parent's guess plus the bone. Both get an error.
   void put_guess(std::size_t t, KinectJoint j, const Vec3& seen, const std::optional<Vec3>& hider) {
     Memory& memory = memories_[j];
     const Memory& parent = memories_[kinect_limbs[j].parent];
@@ -164,7 +165,7 @@ class Tracker {
         (1.0 - memory.away) * seen + memory.away * guessed;
   }
 
-  /// Marks inferred joints, and now and then a visible one.
+  /// Marks inferred joints, and sometimes a visible joint.
   void mark(std::size_t t, KinectJoint j, bool inferred, std::uint64_t k) {
     Memory& memory = memories_[j];
     if (options_.parts.occlusion && memory.doubted == 0 && random_.chance(k, 14, doubt)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tracker's behaviour for a joint that it can't see: it guesses the position, or takes the
+// How the tracker treats a joint that it can't see: it guesses the position, or it reports the
 // object that hides the joint.
 #pragma once
 
@@ -7,11 +7,11 @@
 
 namespace kinalign {
 
-/// Reason why a joint is not seen in a frame.
+/// Reason why a joint is outside the image in a frame.
 enum class Unseen : std::uint8_t { no, below_image, out_of_view };
 
-/// Moves hidden joints of `frames`, positions [T,25,3] m, and marks their states [T,25] as
-/// inferred. `unseen` [T,25]; joints out of view are left to the caller.
+/// Moves hidden joints of `frames`, positions [T,25,3] m, and sets their states [T,25] to inferred.
+/// `unseen` [T,25]. Joints out of view are not changed; the caller handles them.
 void guess_hidden(const KinectScene& scene, const KinectOptions& options, const KinectIds& ids,
                   std::span<const Unseen> unseen, PointFrames& frames);
 

@@ -11,8 +11,8 @@ namespace kinalign {
 
 namespace {
 
-// Distance of poses whose errors have little in common. Fitted to the autocorrelation at 15 frames;
-// it also reproduces the negative values at 20 and 30 frames.
+// Distance between poses beyond which their errors are nearly independent. Fitted to the
+// autocorrelation at 15 frames. It also gives the measured negative values at 20 and 30 frames.
 constexpr double reach = 0.25;  // m
 
 Vec3 normals(const RandomStream& random, std::uint64_t k, std::uint64_t lane) {
@@ -21,8 +21,8 @@ Vec3 normals(const RandomStream& random, std::uint64_t k, std::uint64_t lane) {
 
 }  // namespace
 
-// Frequencies and phases are those of the take, so two cameras see the same function of the pose.
-// Only the sizes of the waves differ in part between cameras.
+// Frequencies and phases belong to the take, so two cameras see the same function of the pose. Only
+// a part of the waves' sizes differs between cameras.
 KinectPoseError::KinectPoseError(const KinectIds& ids, double shared) {
   const RandomStream of_body = kinect_take_stream(KinectDraw::pose_noise, ids);
   const RandomStream of_camera = kinect_stream(KinectDraw::pose_noise, ids);

@@ -8,12 +8,12 @@ namespace kinalign {
 
 namespace {
 
-constexpr double largest_distance = 100.0;  // m; a joint farther away is not accepted
+constexpr double largest_distance = 100.0;  // m; a joint farther away is treated as unknown
 constexpr double bustle_s = 0.5;
-// Number of frames over which a difference still counts as a motion.
+// Greatest number of frames between two frames whose difference counts as a motion.
 constexpr std::int64_t longest_gap = 10;
 
-// Brings the true joints into the camera's space.
+// Converts the true joints to the camera's space.
 void take_truth(const KinectJointsAt& joints_at, const RigidTransform& world_from_kinect,
                 KinectScene& scene) {
   const Quat turn = world_from_kinect.rotation.conjugate();
@@ -27,15 +27,15 @@ void take_truth(const KinectJointsAt& joints_at, const RigidTransform& world_fro
       scene.known[i] = p.norm() < largest_distance ? 1 : 0;
       if (scene.known[i] != 0) {
         vec3(scene.truth, i) = p;
-      } else if (t > 0) {  // keeps the last position, so that other quantities stay valid
+      } else if (t > 0) {  // keeps the last position, so that other quantities are not affected
         vec3(scene.truth, i) = vec3(scene.truth, i - kinect_joint_count);
       }
     }
   }
 }
 
-/// Finds the heading. The left is the level direction across hips and shoulders; without such a
-/// direction it stays as in `before`.
+/// Computes the heading. The left is the horizontal direction across hips and shoulders. If that
+/// direction is not defined, the heading stays as in `before`.
 BodyHeading heading(std::span<const double> joints, const Vec3& up, const BodyHeading& before) {
   const Vec3 across = vec3(joints, hip_left) - vec3(joints, hip_right) +
                       vec3(joints, shoulder_left) - vec3(joints, shoulder_right);
@@ -72,12 +72,12 @@ void take_poses(KinectScene& scene) {
   }
 }
 
-/// Speeds of joints at `places` [T,25,3] m: [T,25] m/s.
+/// Returns the speeds of joints at `places` [T,25,3] m: [T,25] m/s.
 std::vector<double> speeds(const KinectScene& scene, const std::vector<double>& places) {
   const std::size_t frames = scene.frames();
   std::vector<double> found(scene.known.size(), 0.0);
   for (std::size_t t = 0; t < frames; ++t) {
-    // A central difference; at an end or a gap it is one-sided.
+    // A central difference. At an end or a gap the difference is one-sided.
     const std::size_t a = t > 0 && follows(scene.ticks[t - 1], scene.ticks[t]) ? t - 1 : t;
     const std::size_t b = t + 1 < frames && follows(scene.ticks[t], scene.ticks[t + 1]) ? t + 1 : t;
     const double dt = scene.ticks[b].seconds - scene.ticks[a].seconds;
@@ -91,7 +91,7 @@ std::vector<double> speeds(const KinectScene& scene, const std::vector<double>& 
   return found;
 }
 
-/// Means of `values` [T,C] over half a second.
+/// Returns means of `values` [T,C] over half a second.
 std::vector<double> smoothed(const KinectScene& scene, const std::vector<double>& values,
                              std::size_t channels) {
   const std::size_t frames = scene.frames();
@@ -112,7 +112,7 @@ std::vector<double> smoothed(const KinectScene& scene, const std::vector<double>
   return found;
 }
 
-// Means over the 25 joints of each frame.
+// Returns the means over the 25 joints of each frame.
 std::vector<double> over_joints(const std::vector<double>& values) {
   std::vector<double> means(values.size() / kinect_joint_count, 0.0);
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sensor's stamps; its random streams are listed in kinect_draws.h.
+// The stamps of the sensor. kinect_draws.h lists its random number streams.
 #include "kinalign/simulate/kinect/kinect_camera.h"
 #include "kinalign/simulate/kinect/kinect_draws.h"
 
@@ -10,14 +10,14 @@ namespace kinalign {
 
 namespace {
 
-// Device ticks of 100 ns: of three steps between frames two are 32.98 ms and one is 34.03 ms (mean
-// 33.33).
+// Steps in clock readings of 100 ns. Of three steps between frames, two are 32.98 ms and one is
+// 34.03 ms (mean 33.33).
 constexpr std::int64_t short_step = 329'800, long_step = 340'300, even_step = 333'300;
 constexpr double tick_s = 1e-7;
-constexpr double goes_on = 0.06;  // probability that another frame is dropped after a dropped one
+constexpr double goes_on = 0.06;  // probability that the frame after a dropped frame is dropped too
 
-/// Step between frames k and k + 1. Each group of three steps has one long step at a random place,
-/// so that long steps don't cluster.
+/// Returns the step between frames k and k + 1. Each group of three steps has one long step at a
+/// random position, so that long steps are evenly distributed.
 std::int64_t step(const RandomStream& random, std::int64_t k, bool uneven) {
   if (!uneven) return even_step;
   const auto three = static_cast<std::uint64_t>(k / 3);
@@ -32,8 +32,8 @@ std::vector<KinectTick> kinect_ticks(const KinectOptions& options, const KinectI
                                      double begin_s, double end_s) {
   const RandomStream random = kinect_stream(KinectDraw::stamps, ids);
   const double share = std::clamp(options.drop_rate, 0.0, 0.9);
-  // The probability that a dropped frame follows a kept one, so that `share` of all frames are
-  // dropped.
+  // Probability that a frame after an accepted frame is dropped. With this value, `share` of all
+  // frames are dropped.
   const double run_begins = share * (1.0 - goes_on) / (1.0 - share);
   const double rate = 1.0 + options.drift_ppm * 1e-6;
   std::vector<KinectTick> ticks;

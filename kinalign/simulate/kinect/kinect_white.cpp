@@ -12,14 +12,13 @@ namespace kinalign {
 
 namespace {
 
-constexpr double of_robust = 0.75;   // the measured figures belong to second differences
+constexpr double of_robust = 0.75;   // converts figures that were measured on second differences
 constexpr double most_white = 0.08;  // m
 
 // Twitches. The measured autocorrelation falls by 5 % (trunk) to 24 % (feet) within one frame,
-// while the usual second difference stays below a millimetre. So a few frames must be far off. The
-// rate, and its differences between joints, were fitted to each joint's autocorrelation at one
-// frame.
-// For each frame; share of that rate at rest.
+// although the usual second difference is below a millimetre. A few frames must therefore have
+// large errors. The rate of twitches was fitted to each joint's autocorrelation at one frame.
+// twitch_rate is per frame; twitch_at_rest is the share of that rate at rest.
 constexpr double twitch_rate = 0.0115, twitch_at_rest = 0.02;
 constexpr double twitch_sd = 0.025;  // m for each axis, times an exponential draw
 constexpr int longest_twitch = 4;    // number of frames

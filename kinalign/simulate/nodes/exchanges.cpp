@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 4 of a seed: lane 0 the dither of sending, 1 the host's turnaround, 2 the node's. Stream
-// 5: boot ids.
+// Stream 4 of a seed has these lanes: 0 the variation of sending times, 1 the host's turnaround, 2
+// the node's. Stream 5 gives the boot ids.
 #include "kinalign/simulate/nodes/exchanges.h"
 
 #include "kinalign/simulate/random.h"
@@ -12,12 +12,12 @@ namespace kinalign {
 
 namespace {
 
-// Times of sending and of the node's answers vary by up to this.
+// Greatest variation of sending times and of the node's answers.
 constexpr double dither_s = 1e-3;
-constexpr double turnaround_s = 30e-6;  // mean, on the host
+constexpr double turnaround_s = 30e-6;  // host's mean time from a frame's arrival to its reply
 
-/// The node's counter with all steps, reboots and changes of rate.
-/// The crystal counts on through everything; a boot only begins a new count from it.
+/// The node's counter with all steps, reboots and changes of rate. The crystal runs through all of
+/// them; a boot only sets the count to zero.
 class Counter {
  public:
   Counter(std::uint64_t seed, const ExchangeOptions& options)
@@ -28,13 +28,14 @@ class Counter {
     double seconds;
   };
 
-  /// False between a loss of power and the start after it.
+  /// Returns false from a loss of power until the next start.
   bool powered(double t) const {
     return std::none_of(options_.reboots.begin(), options_.reboots.end(),
                         [&](const Reboot& r) { return t >= r.at && t < r.at + r.gap; });
   }
 
-  /// The reading at true time t. Steps and stretches before the current boot do not count.
+  /// Returns the reading at true time t. Steps and changes of rate before the current boot have no
+  /// effect.
   Reading at(double t) const {
     std::uint64_t id = 0;
     double begin = -1.0;  // start of the current boot
@@ -62,12 +63,12 @@ class Counter {
   RandomStream ids_;
 };
 
-// A counter shows whole microseconds that have passed.
+// A counter shows completed microseconds.
 std::int64_t microseconds(double seconds) {
   return static_cast<std::int64_t>(std::floor(seconds * 1e6));
 }
 
-/// Fills the frames with the node's readings; the sequence restarts after a reboot.
+/// Fills the frames with the node's readings. The sequence number begins again after a reboot.
 void send_frames(const Counter& counter, std::uint64_t seed, SimulatedExchanges& run) {
   const ExchangeOptions& o = run.options;
   const RandomStream random(seed, 4);
@@ -78,8 +79,8 @@ void send_frames(const Counter& counter, std::uint64_t seed, SimulatedExchanges&
     SimulatedFrame frame;
     frame.sent = (static_cast<double>(k) + 0.5) / o.rate_hz + dither_s * random.uniform(k, 0);
     const Counter::Reading reading = counter.at(frame.sent);
-    // Also a restart without a new boot id, which shows only by a counter that fell by more than a
-    // second.
+    // A restart without a new boot id is recognised too, because the counter then falls by more
+    // than a second.
     const bool restarted =
         !run.frames.empty() &&
         (was_off || run.frames.back().boot_id != reading.boot_id ||
@@ -91,14 +92,15 @@ void send_frames(const Counter& counter, std::uint64_t seed, SimulatedExchanges&
     frame.boot_id = reading.boot_id;
     frame.sequence = sequence++;
     frame.n_tx_us = microseconds(reading.seconds);
-    // The counter is truncated to microseconds. The truth is the time in the middle of the
-    // microsecond that was read.
+    // The counter is truncated to microseconds. The truth is the time of the middle of the
+    // microsecond.
     frame.truth = frame.sent + static_cast<double>(frame.n_tx_us) * 1e-6 + 0.5e-6 - reading.seconds;
     run.frames.push_back(frame);
   }
 }
 
-/// Sends the frames to the host. Returns the indices of those that arrive, in the order of arrival.
+/// Sends the frames to the host. Returns the indices of the frames that arrive, in the order of
+/// arrival.
 std::vector<std::size_t> carry_up(std::uint64_t seed, SimulatedExchanges& run) {
   std::vector<double> sent(run.frames.size());
   for (std::size_t k = 0; k < sent.size(); ++k) sent[k] = run.frames[k].sent;
@@ -115,15 +117,15 @@ std::vector<std::size_t> carry_up(std::uint64_t seed, SimulatedExchanges& run) {
   return arrival;
 }
 
-/// Sends a reply to each frame that arrived. The node reads its counter when a reply reaches it.
-/// Replies that arrive while the node is off, or after a reboot, have no effect.
+/// Sends a reply to each frame that arrived. The node reads its counter when a reply arrives. A
+/// reply that arrives while the node is off or after a reboot has no effect.
 void carry_down(const Counter& counter, std::uint64_t seed, const std::vector<std::size_t>& arrival,
                 SimulatedExchanges& run) {
   const RandomStream random(seed, 4);
   std::vector<double> sent(arrival.size());
   double last = 0.0;
   for (std::size_t j = 0; j < arrival.size(); ++j) {
-    // The host answers frames one after the other.
+    // The host answers one frame after another.
     last = std::max(last, *run.frames[arrival[j]].arrival + random.exponential(j, 1, turnaround_s));
     sent[j] = run.frames[arrival[j]].replied = last;
   }
@@ -138,7 +140,7 @@ void carry_down(const Counter& counter, std::uint64_t seed, const std::vector<st
   }
 }
 
-/// Echoes: each frame carries the newest reply that came since the frame before it.
+/// Sets the echoes: each frame contains the newest reply since the previous frame.
 void echo_replies(SimulatedExchanges& run) {
   auto& frames = run.frames;
   for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -151,7 +153,8 @@ void echo_replies(SimulatedExchanges& run) {
   }
 }
 
-/// The third packet of the paper's exchange, sent by a node without a clock.
+/// Simulates the third packet of the exchange in the HFUT-MMD paper, which a node without a clock
+/// sends.
 void confirm(std::uint64_t seed, SimulatedExchanges& run) {
   const RandomStream random(seed, 4);
   std::vector<std::pair<double, std::size_t>> answers;
@@ -170,8 +173,8 @@ void confirm(std::uint64_t seed, SimulatedExchanges& run) {
 
 }  // namespace
 
-// The steps are those of the packets: up, down, then the echo in a later frame. The last step
-// simulates the paper's third packet over the same exchanges.
+// The steps have the order of the packets: frame, reply, echo in a later frame. The last step
+// simulates the third packet of the HFUT-MMD paper for the same exchanges.
 SimulatedExchanges simulate_exchanges(const ExchangeOptions& options, std::uint64_t seed) {
   SimulatedExchanges run{options, floors(options.link.link, seed), {}};
   const Counter counter(seed, run.options);

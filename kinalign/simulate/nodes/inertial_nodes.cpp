@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 115 of a node's seed: number 0 lane 0 is the phase of its timer; lane 1, by tick, is the
-// delay until the tick is served. The pass poses the body at every chip step; the last five poses
-// give the true reading in their middle.
+// Stream 115 of a node's seed has these lanes: 0 the phase of the timer (number 0), 1 the delay of
+// reading after each tick, by tick. The pass computes the pose of the body at every chip step. The
+// last five poses give the true reading at the middle pose.
 #include "kinalign/simulate/nodes/inertial_nodes.h"
 
 #include <cmath>
@@ -12,19 +12,19 @@ namespace kinalign {
 
 namespace {
 
-// Delay from the timer to the reading; estimated for a task of high priority on an idle core.
+// Delay from the timer to the reading, estimated for a task of high priority on an idle core.
 constexpr double service_s = 15e-6;
 
-/// The timer's ticks on the node's counter, and the times at which they are served.
+/// The timer's ticks on the node's counter, and the times at which the samples are read.
 class NodeTimer {
  public:
   NodeTimer(const InertialNodeOptions& options, std::uint64_t seed, double length_s)
       : clock_(seed, length_s, options.clock),
         random_(seed, 115),
-        // In whole microseconds, like the firmware's timer.
+        // In whole microseconds, as in the firmware.
         period_us_(1'000'000 / options.rate_hz) {
     const double phase = static_cast<double>(period_us_) * random_.uniform(0, 0);
-    // The first tick comes within one period after the beginning.
+    // The first tick comes within one period.
     next_us_ = static_cast<std::uint64_t>(clock_.reading(0.0) * 1e6 + phase) + 1;
     plan();
   }
@@ -33,7 +33,7 @@ class NodeTimer {
   std::uint64_t counter_us() const {
     return static_cast<std::uint64_t>(clock_.reading(served_s_) * 1e6);
   }
-  /// The true time at which the counter stood at this value.
+  /// Returns the true time at which the counter had this value.
   double true_s(std::uint64_t counter_us) const {
     return clock_.host(static_cast<double>(counter_us) * 1e-6);
   }
@@ -44,7 +44,8 @@ class NodeTimer {
   }
 
  private:
-  /// A tick is served by a task a little later; the sample has the counter of that moment.
+  /// A task reads the sample shortly after the tick. The sample gets the counter value at that
+  /// time.
   void plan() { served_s_ = true_s(next_us_) + random_.exponential(tick_, 1, service_s); }
 
   SimulatedClock clock_;
@@ -53,7 +54,7 @@ class NodeTimer {
   double served_s_ = 0.0;
 };
 
-/// Mean rate of a sensor that lies still, rad/s.
+/// Returns the mean rate of a sensor at rest, rad/s.
 Vec3 mean_rate_at_rest(SimulatedSensor& sensor, const Vec3& gravity, double rest_s) {
   const auto steps = static_cast<std::size_t>(rest_s * chip_rate_hz);
   Vec3 sum = Vec3::Zero();
@@ -63,8 +64,8 @@ Vec3 mean_rate_at_rest(SimulatedSensor& sensor, const Vec3& gravity, double rest
   return steps == 0 ? sum : Vec3(sum / static_cast<double>(steps));
 }
 
-// The node lies still, z up, before it is worn. The filter learns the bias then; afterwards the
-// zeros walk on.
+// Before it is worn, the node is at rest with z up, and the filter measures the bias. Afterwards
+// the zero offsets drift.
 MahonyOptions calibrated(const InertialNodeOptions& options, SimulatedSensor& sensor) {
   MahonyOptions filter = options.filter;
   if (!(options.rest_s > 0.0)) return filter;
@@ -73,8 +74,8 @@ MahonyOptions calibrated(const InertialNodeOptions& options, SimulatedSensor& se
   return filter;
 }
 
-/// One node during the pass: chip, filter and timer, and the samples so far.
-/// All nodes advance together, so that the motion is asked only once for each chip step.
+/// One node during the pass: chip, filter, timer and the samples so far. All nodes advance
+/// together, so that each pose is computed only once per chip step.
 class NodeAtWork {
  public:
   NodeAtWork(const Mounting& mounting, const InertialNodeOptions& options, std::uint64_t seed,
@@ -87,8 +88,8 @@ class NodeAtWork {
     node_.seed = seed;
   }
 
-  /// Runs the chip for one step; its reading belongs to the middle of the last five poses.
-  /// Call for each chip step in turn.
+  /// Runs the chip for one step. Its reading belongs to the middle of the last five poses. Call for
+  /// each chip step in order.
   void chip_step(const std::array<const GlobalPose*, 5>& poses) {
     std::array<SensorPlace, 5> places;
     for (std::size_t k = 0; k < 5; ++k) places[k] = place_of(node_.mounting, *poses[k]);
@@ -96,7 +97,7 @@ class NodeAtWork {
     if (options_.orientation) filter_.update(chip_step_s, sensor_.reading_of(registers_));
   }
 
-  /// Takes a sample for each tick that is served before `t`; the registers don't change until then.
+  /// Takes a sample for each tick that is read before `t`. The registers don't change until then.
   void serve(double t, const Motion& motion) {
     for (; timer_.served_s() < t; timer_.advance()) {
       SimulatedNodeSample taken{timer_.counter_us(), sensor_.sample_of(registers_)};
@@ -106,7 +107,7 @@ class NodeAtWork {
         taken.sample.orientation = {static_cast<float>(q.w()), static_cast<float>(q.x()),
                                     static_cast<float>(q.y()), static_cast<float>(q.z())};
       }
-      // The truth belongs to the counter's microsecond, not to the moment of the reading within it.
+      // The counter is truncated to microseconds. The truth is that of the truncated time.
       const double true_s = timer_.true_s(taken.counter_us);
       motion.pose_at(true_s, pose_);
       forward_kinematics(motion.skeleton, pose_, global_);
@@ -115,7 +116,7 @@ class NodeAtWork {
       node_.truth.places.push_back(place_of(node_.mounting, global_));
     }
   }
-  /// Passes over ticks for which there are no registers yet.
+  /// Skips ticks for which there are no registers yet.
   void skip(double t) {
     while (timer_.served_s() < t) timer_.advance();
   }
@@ -160,21 +161,21 @@ Result<std::vector<SimulatedNode>> simulate_nodes(const Motion& motion,
   for (std::size_t n = 0; n < mountings.size(); ++n) {
     nodes.push_back(
         std::make_unique<NodeAtWork>(mountings[n], options, mix64(seed) + n, motion.length_s));
-    nodes.back()->skip(2.0 * chip_step_s);  // no reading exists before that
+    nodes.back()->skip(2.0 * chip_step_s);  // there is no reading before that
   }
-  std::array<GlobalPose, 5> poses;  // pose i of the motion is at index i % 5
+  std::array<GlobalPose, 5> poses;  // pose i of the motion has the index i % 5
   Pose pose;
   const auto steps = static_cast<std::size_t>(motion.length_s * chip_rate_hz + 1e-6);
   for (std::size_t i = 0; i <= steps; ++i) {
     motion.pose_at(static_cast<double>(i) * chip_step_s, pose);
     forward_kinematics(motion.skeleton, pose, poses[i % 5]);
-    // Five poses are needed for the first reading.
+    // The first reading needs five poses.
     if (i < 4) continue;
     std::array<const GlobalPose*, 5> last{};
     for (std::size_t k = 0; k < 5; ++k) last[k] = &poses[(i + 1 + k) % 5];
     for (const auto& node : nodes) {
       node->chip_step(last);
-      // The reading belongs to pose i - 2. Its registers hold until the time of pose i - 1.
+      // The reading belongs to pose i - 2. Its registers are valid until the time of pose i - 1.
       node->serve(static_cast<double>(i - 1) * chip_step_s, motion);
     }
   }
@@ -184,7 +185,7 @@ Result<std::vector<SimulatedNode>> simulate_nodes(const Motion& motion,
   return done;
 }
 
-// All samples are valid here. A link that loses some is applied later (rehearsal.h).
+// All samples are valid here. rehearsal.h removes the samples that a link loses.
 ImuStream imu_stream(const SimulatedNode& node, Time start) {
   ImuStream stream;
   stream.node_names = {node.mounting.node_name};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams of a chip's seed: 110 and 111 the noise of gyroscope and accelerometer (lanes 0, 2, 4),
-// 112 the walks (lanes 0 to 10), 113 scale, misalignment and zeros (number 0 for the gyroscope, 1
-// for the accelerometer; lanes 0 to 8 the matrix, 9 to 11 the zeros).
+// Streams of a chip's seed: 110 and 111 are the noise of gyroscope and accelerometer (lanes 0, 2,
+// 4), 112 the walks (lanes 0 to 10). 113 is scale, misalignment and zeros: number 0 for the
+// gyroscope, 1 for the accelerometer; lanes 0 to 8 the matrix, 9 to 11 the zeros.
 #include "kinalign/simulate/nodes/inertial_sensor.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace kinalign {
 
 namespace {
 
-// A number from -most to most, all equally likely.
+// Returns a uniform number from -most to most.
 double evenly(const RandomStream& random, std::uint64_t number, std::uint64_t lane, double most) {
   return most * (2.0 * random.uniform(number, lane) - 1.0);
 }
@@ -21,7 +21,7 @@ Vec3 normal(const RandomStream& random, std::uint64_t k, std::uint64_t lane) {
   return {random.normal(k, lane), random.normal(k, lane + 2), random.normal(k, lane + 4)};
 }
 
-// Diagonal: errors of scale. The others: misalignment of an axis towards another one.
+// Diagonal elements: scale errors. Other elements: misalignment of an axis towards another axis.
 Eigen::Matrix3d drawn_scale(const RandomStream& random, std::uint64_t number, double scale,
                             double misalignment) {
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
@@ -37,7 +37,7 @@ Vec3 drawn_zero(const RandomStream& random, std::uint64_t number, double most) {
           evenly(random, number, 11, most)};
 }
 
-/// Rounds to steps of the range over 32768 and clamps at the ends of the range.
+/// Rounds to multiples of range / 32768 and limits the value to the range.
 std::array<std::int16_t, 3> quantised(const Vec3& value, double range) {
   std::array<std::int16_t, 3> raw{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -50,7 +50,7 @@ std::array<std::int16_t, 3> quantised(const Vec3& value, double range) {
 }  // namespace
 
 ChipLowPass::ChipLowPass(double bandwidth_hz) {
-  // Each pole lies at bandwidth / sqrt(sqrt(2) - 1), so that both together are 3 dB down at the
+  // Each pole is at bandwidth / sqrt(sqrt(2) - 1), so that both together give -3 dB at the
   // bandwidth.
   const double pole = 2.0 * std::numbers::pi * bandwidth_hz / std::sqrt(std::numbers::sqrt2 - 1.0);
   const double w = pole * chip_step_s;
@@ -90,7 +90,7 @@ void SimulatedSensor::wait(double seconds) {
   accelerometer_ = ChipLowPass(model_.accelerometer_bandwidth_hz);
 }
 
-// A random walk grows with the root of the time, so one draw serves any duration.
+// A random walk grows with the square root of time, so one draw suffices for any duration.
 void SimulatedSensor::walk(double seconds) {
   const double root = std::sqrt(seconds);
   errors_.gyroscope_zero += model_.gyroscope_walk * root * normal(walks_, walked_, 0);
@@ -100,7 +100,7 @@ void SimulatedSensor::walk(double seconds) {
 
 RawReading SimulatedSensor::step(const InertialReading& truth) {
   walk(chip_step_s);
-  // The noise density applies to the band up to half of the chip's rate.
+  // The noise density applies up to half of the chip's rate.
   const double band = std::sqrt(0.5 * chip_rate_hz);
   const Vec3 rate = errors_.gyroscope_scale * truth.angular_velocity + errors_.gyroscope_zero +
                     model_.gyroscope_noise * band * normal(gyroscope_noise_, steps_, 0);
@@ -111,7 +111,7 @@ RawReading SimulatedSensor::step(const InertialReading& truth) {
           quantised(gyroscope_.push(rate), model_.gyroscope_range)};
 }
 
-// Computed in float, in the order of the firmware, so that the values are the same to the last bit.
+// Computed in float in the same order as in the firmware, so that all bits of the values agree.
 NodeSample SimulatedSensor::sample_of(const RawReading& reading) const {
   const auto acceleration_step = static_cast<float>(model_.accelerometer_range / 32768.0);
   const auto angular_velocity_step = static_cast<float>(model_.gyroscope_range / 32768.0);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reading of a perfect inertial sensor on a moving body, from its places at five instants. It
-// uses central differences of fourth order. Their error is the sixth derivative times h^4 / 90 (for
-// people at h = 1 ms: below 1e-5 m/s2) and the fifth derivative times h^4 / 30.
+// The reading of a perfect inertial sensor on a moving body, computed from its positions and
+// rotations at five times. It uses central differences of fourth order. The error of the
+// acceleration is the sixth derivative times h^4 / 90 (for people at h = 1 ms: below 1e-5 m/s2).
+// The error of the rate is the fifth derivative times h^4 / 30.
 #pragma once
 
 #include "kinalign/motion/mahony.h"
@@ -26,11 +27,11 @@ struct Mounting {
   Quat bone_from_sensor = Quat::Identity();
 };
 
-/// The sensor's place for a pose of the whole body.
+/// Returns the position and rotation of the sensor for a pose of the whole body.
 SensorPlace place_of(const Mounting& mounting, const GlobalPose& pose);
 
-/// Rate, rad/s, and specific force, m/s2, in sensor space, in the middle of five places that are
-/// `step_s` apart. A sensor at rest reads gravity upwards.
+/// Returns rate, rad/s, and specific force, m/s2, in the sensor's axes, in the middle of five
+/// places with distance `step_s`. The specific force of a sensor at rest points up.
 InertialReading true_reading(const std::array<SensorPlace, 5>& places, double step_s);
 
 }  // namespace kinalign

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams of a seed: 3 the link's own draw, 10 to 12 delays, 20 and 21 good and bad states, 30
-// changes of route, 40 to 42 reordering and duplicates, 50 bursts, 60 to 62 losses of faults.
+// Streams of a seed: 3 the properties of the link, 10 to 12 delays, 20 and 21 good and bad states,
+// 30 changes of route, 40 to 42 reordering and duplicates, 50 bursts, 60 to 62 losses of faults.
 #include "kinalign/simulate/nodes/link.h"
 
 #include "kinalign/simulate/random.h"
@@ -21,7 +21,7 @@ struct Shares {
   double lost, duplicated, reordered;
 };
 
-/// Shares of packets that each link loses, duplicates and reorders.
+/// Returns the shares of packets that each link loses, duplicates and reorders.
 Shares shares(Link link) {
   switch (link) {
     case Link::wired:
@@ -41,14 +41,14 @@ Shares shares(Link link) {
   return {};
 }
 
-/// Two alternating states with exponential durations; the good one comes first.
-/// Used for the congested link, and for bursts of loss.
+/// Two alternating states with exponential durations, beginning with the good state. Used for the
+/// congested link and for bursts of loss.
 class Dwells {
  public:
   Dwells(RandomStream random, double good_s, double bad_s)
       : random_(random), good_s_(good_s), bad_s_(bad_s) {}
 
-  /// Call with rising times.
+  /// Returns whether the state at t is bad. Call with rising times.
   bool bad(double t) {
     while (end_ <= t) {
       end_ += random_.exponential(dwell_, 0, dwell_ % 2 == 0 ? good_s_ : bad_s_);
@@ -64,13 +64,14 @@ class Dwells {
   std::uint64_t dwell_ = 0;
 };
 
-/// A change of route every 20 s + Exp(40 s): an outage of 0.2 to 2 s, then another extra delay in
-/// each direction.
+/// Changes of route, every 20 s + Exp(40 s). During an outage of 0.2 to 2 s all packets are lost;
+/// then each direction has another additional delay.
 class Roams {
  public:
   Roams(RandomStream random, Way way) : random_(random), down_(way == Way::down) { next_ = step(); }
 
-  /// Call with rising times: the extra delay of the route, and whether it is changing.
+  /// Returns the additional delay of the route, and whether the route is changing. Call with rising
+  /// times.
   Transit at(double t) {
     while (next_ <= t) {
       last_ = next_;
@@ -92,7 +93,7 @@ class Roams {
   double last_ = 0.0, next_ = 0.0;
 };
 
-// Every packet has a short delay; 8 % wait some milliseconds more, 0.5 % up to 20 ms.
+// Every packet has a short delay. 8 % wait some milliseconds longer, 0.5 % up to 20 ms.
 double quiet_delay(const RandomStream& s, std::uint64_t k) {
   double d = s.exponential(k, 0, 0.25 * ms);
   if (s.chance(k, 1, 0.08)) d += s.exponential(k, 2, 2.0 * ms);
@@ -100,7 +101,8 @@ double quiet_delay(const RandomStream& s, std::uint64_t k) {
   return d;
 }
 
-/// Time that the access point keeps a reply, until the next beacon that the node receives.
+/// Returns the time until the next beacon that the node receives. The access point keeps a reply
+/// until then.
 double beacon_wait(const RandomStream& s, std::uint64_t seed, std::uint64_t k, double sent) {
   if (s.chance(k, 4, 0.10)) return 0.0;  // the node is still awake
   const RandomStream link(seed, 3);
@@ -109,20 +111,20 @@ double beacon_wait(const RandomStream& s, std::uint64_t seed, std::uint64_t k, d
   return (ahead < 0.0 ? ahead + period : ahead) + (s.chance(k, 3, 0.02) ? period : 0.0);
 }
 
-// In the bad state delays are log-normal, at most 2 s.
+// In the bad state, delays are log-normal, but at most 2 s.
 double congested_delay(const RandomStream& s, std::uint64_t k, bool down, bool bad) {
   if (!bad) return s.exponential(k, 2, down ? 6.0 * ms : 3.0 * ms);
   return std::min((down ? 60.0 : 25.0) * ms * std::exp(s.normal(k, 0)), 2.0);
 }
 
 struct Packet {
-  std::uint64_t k = 0;  // number in its direction
+  std::uint64_t k = 0;  // number of the packet in its direction
   double sent = 0.0;
   Way way = Way::up;
-  bool bad = false;  // state of a link with two states
+  bool bad = false;  // bad state of a link with two states
 };
 
-/// Delay in addition to the floor, s.
+/// Returns the delay in addition to the least delay, s.
 double above_floor(Link link, const RandomStream& s, std::uint64_t seed, const Packet& packet) {
   const std::uint64_t k = packet.k;
   const bool down = packet.way == Way::down;
@@ -133,7 +135,7 @@ double above_floor(Link link, const RandomStream& s, std::uint64_t seed, const P
     case Link::quiet:
     case Link::roaming:
       return quiet_delay(s, k);
-    case Link::paper:  // 9 % find an idle channel and an awake radio
+    case Link::paper:  // 9 % of the packets find an idle channel and an awake radio
       return s.exponential(k, 0, 1.9 * ms) +
              (s.chance(k, 1, 0.91) ? 59.0 * ms * s.uniform(k, 2) : 0.0);
     case Link::thin_floor:
@@ -148,7 +150,7 @@ double above_floor(Link link, const RandomStream& s, std::uint64_t seed, const P
   return 0.0;
 }
 
-// Faults have their own random numbers, so adding one changes nothing else about the link.
+// Faults have their own random numbers, so an added fault does not change the rest of the link.
 void add_faults(const LinkOptions& options, std::uint64_t seed, Way way,
                 std::span<const double> sent, std::vector<Transit>& transits) {
   const RandomStream losses(seed, 60 + number(way));
@@ -164,8 +166,8 @@ void add_faults(const LinkOptions& options, std::uint64_t seed, Way way,
 
 }  // namespace
 
-// The two directions differ by a drawn asymmetry (that of the congested link is fixed). No exchange
-// can show it.
+// The least delays of the two directions differ by a random asymmetry (fixed for the congested
+// link). No exchange can measure this asymmetry.
 Floors floors(Link link, std::uint64_t seed) {
   const double asymmetry = 2.0 * RandomStream(seed, 3).uniform(0, 0) - 1.0;
   const auto around = [&](double floor, double spread) {
@@ -189,14 +191,14 @@ Floors floors(Link link, std::uint64_t seed) {
   return {};
 }
 
-// Draws go by the packet's number in its direction, so a fault or a later packet changes no draw of
-// others.
+// Random numbers depend on the number of the packet in its direction. A fault or a later packet
+// therefore does not change them.
 std::vector<Transit> transits(const LinkOptions& options, std::uint64_t seed, Way way,
                               std::span<const double> sent) {
   const RandomStream random(seed, 10 + number(way));
   const Floors least = floors(options.link, seed);
   const double floor = way == Way::down ? least.down : least.up;
-  // Packets that confirm go up, so they share the states of that direction.
+  // `confirm` packets go to the host, so they have the states of that direction.
   Dwells states(RandomStream(seed, 20 + number(way) % 2), 5.0, 3.0);
   Roams roams(RandomStream(seed, 30), way);
   std::vector<Transit> out(sent.size());
@@ -214,7 +216,7 @@ std::vector<Transit> transits(const LinkOptions& options, std::uint64_t seed, Wa
   return out;
 }
 
-// Packets of a direction queue: none overtakes another, except those that are reordered.
+// Packets of one direction queue in order, except for reordered packets.
 std::vector<Arrival> transmit(const LinkOptions& options, std::uint64_t seed, Way way,
                               std::span<const double> sent) {
   const RandomStream random(seed, 40 + number(way));
@@ -230,7 +232,7 @@ std::vector<Arrival> transmit(const LinkOptions& options, std::uint64_t seed, Wa
     } else {
       last = arrival = std::max(arrival, last + queue_gap_s);  // a lost packet was in the queue too
     }
-    // A burst loses everything, in addition to the link's own losses.
+    // During a burst all packets are lost, in addition to the link's own losses.
     const bool lost = way_through[k].lost || (options.bursts && bursts.bad(sent[k]));
     if (lost) continue;
     out[k].first = arrival;

@@ -12,12 +12,12 @@ namespace kinalign {
 namespace {
 
 constexpr double grid_s = 0.1;
-constexpr double first_reading_s = 5.0;  // the node was on before the host received its first frame
-constexpr std::size_t grid_margin = 200;  // steps after the end of the recording
+constexpr double first_reading_s = 5.0;   // the node started before the recording
+constexpr std::size_t grid_margin = 200;  // steps of the grid after the end of the recording
 constexpr double pi = std::numbers::pi;
 
-/// Frequency error at t that `ramp` and `curvature` add.
-/// It is the integral of ramp + curvature sin(w t), so it begins at 0.
+/// Returns the frequency error at t caused by `ramp` and `curvature`. It is the integral of ramp +
+/// curvature sin(w t), so it is 0 at t = 0.
 double bend(const NodeClockOptions& o, double t) {
   const double w = 2.0 * pi / o.period_s;
   return o.ramp * t + o.curvature / w * (1.0 - std::cos(w * t));
@@ -42,14 +42,15 @@ SimulatedClock::SimulatedClock(std::uint64_t seed, double length_s,
     readings_[i] = first_reading_s + t + offset;
     walk += 1e-9 * std::sqrt(grid_s) * noise.normal(i, 0);
     const double white = 1e-9 / std::sqrt(grid_s) * noise.normal(i, 2);
-    // Warming by 12 degrees with a time constant of four minutes, and a slow swing of one degree.
+    // Warming by 12 degrees with a time constant of four minutes, and a slow variation of one
+    // degree.
     const double degrees =
         12.0 * (1.0 - std::exp(-t / 240.0)) + std::sin(2.0 * pi * (t / 900.0 + phase));
     offset += (constant + walk + white + per_degree * degrees + bend(options, t)) * grid_s;
   }
 }
 
-// Linear between the points of the grid; so is its inverse, `host`.
+// The reading is linear between the points of the grid. Its inverse `host` is linear too.
 double SimulatedClock::reading(double host_s) const {
   const double at = std::clamp(host_s / grid_s, 0.0, static_cast<double>(readings_.size() - 1));
   const auto i = std::min(static_cast<std::size_t>(at), readings_.size() - 2);

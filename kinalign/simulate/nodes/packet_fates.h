@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Effects of a simulated link on the packets of one direction, one after the other. For real
-// sockets, where the times of sending are not known in advance.
+// The effect of a simulated link on each packet of one direction. It is for real sockets, for which
+// the times of sending are not known in advance.
 #pragma once
 
 #include "kinalign/simulate/nodes/link.h"
@@ -13,7 +13,8 @@
 
 namespace kinalign {
 
-/// Fates are drawn in advance for packets at a steady rate, which real ones nearly have.
+/// The effects are drawn in advance for packets at a constant rate. The real rate is nearly
+/// constant.
 class PacketFates {
  public:
   using Delay = std::chrono::nanoseconds;
@@ -22,7 +23,7 @@ class PacketFates {
   };
 
   PacketFates(const LinkOptions& options, std::uint64_t seed, Way way, double rate_hz) {
-    constexpr std::size_t packets = 1 << 16;  // after that they repeat
+    constexpr std::size_t packets = 1 << 16;  // the effects repeat after this number
     std::vector<double> sent(packets);
     for (std::size_t k = 0; k < packets; ++k) sent[k] = static_cast<double>(k) / rate_hz;
     const auto arrivals = transmit(options, seed, way, sent);
@@ -34,7 +35,7 @@ class PacketFates {
       fates_.push_back({after(arrivals[k].first), after(arrivals[k].duplicate)});
     }
   }
-  /// The fate of the next packet. Call it once for each packet that is sent.
+  /// Returns the effect on the next packet. Call once for each packet that is sent.
   const Fate& next() { return fates_[next_++ % fates_.size()]; }
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A point walks from goal to goal with limited speed, acceleration and rate of turning. Its
-// positions every 0.2 s are the controls of the path. Stream 103 of a seed, by the number of the
-// goal in the whole motion: lane 0 direction, 1 distance, 2 angle of the turn.
+// positions every 0.2 s are the control points of the path. Stream 103 of a seed, by the number of
+// the goal in the whole motion, has these lanes: 0 direction, 1 distance, 2 angle of the turn.
 #include "kinalign/simulate/person/body_path.h"
 
 #include "kinalign/simulate/random.h"
@@ -17,19 +17,19 @@ namespace {
 
 using std::numbers::pi;
 constexpr double control_s = 0.2;
-constexpr double tick_s = 0.05;  // four ticks for each control
-// rad/s, estimated: a quarter turn takes 1.3 s and two steps.
+constexpr double tick_s = 0.05;  // four ticks for each control point
+// rad/s, estimated: a quarter turn takes 1.3 s and two steps
 constexpr double most_turn_rate = 1.2;
 constexpr double most_acceleration = 1.0;  // m/s2
-// A goal counts as reached from this distance on.
+// A goal is reached if the distance is at most this.
 constexpr double arrival_m = 0.2;
 
-// The same angle from -pi to pi.
+// Returns the same angle between -pi and pi.
 double wrapped(double angle) { return std::remainder(angle, 2.0 * pi); }
 
-/// Moves the point in ticks, act by act.
-/// The plan is made by small steps of time, because the body must be home at the end of each act.
-/// Only the controls are kept; the path itself is smooth.
+/// Moves the point in small time steps (ticks), act by act. Small steps are needed because the body
+/// must be back at the origin at the end of each act. Only the control points are stored; the path
+/// through them is smooth.
 class Walker {
  public:
   Walker(std::uint64_t seed, double scale) : random_(seed, 103), scale_(scale) {}
@@ -41,14 +41,14 @@ class Walker {
     const StepTimes steps = step_times(act);
     act_ = &act;
     may_move_from_ = steps.first_s;
-    // The last two steps bring the feet under a body that has come to rest already.
+    // The last two steps bring the feet under the body, which has already stopped.
     rest_from_ = steps.count < 4 ? steps.first_s : steps.leaves(steps.count - 2);
     going_home_ = turning_ = false;
     goal_number_ = 0;
     choose();
   }
 
-  /// Moves the point by one tick; outside of the steps it slows down to rest.
+  /// Moves the point by one tick. Outside the steps the point slows down and stops.
   void tick(double t) {
     const bool moves = t >= may_move_from_ && t < rest_from_ && act_->piece != Piece::step;
     if (!moves) {
@@ -63,10 +63,10 @@ class Walker {
   }
 
  private:
-  // m/s; it grows with the root of the size, like a pendulum's.
+  // m/s; grows with the root of the person's size, like the speed of a pendulum
   double top_speed() const { return act_->speed * std::sqrt(scale_); }
 
-  /// Chooses the next goal of the act: a position, or an angle to turn to.
+  /// Chooses the next goal of the act: a position, or an angle for a turn.
   void choose() {
     const std::uint64_t n = goals_++;
     ++goal_number_;
@@ -83,23 +83,23 @@ class Walker {
     hold_s_ = 0.5;
   }
 
-  /// Changes the speed towards `speed`, within the greatest acceleration.
+  /// Changes the speed towards `speed`, limited by the greatest acceleration.
   void approach(double speed) {
     speed_ += std::clamp(speed - speed_, -most_acceleration * tick_s, most_acceleration * tick_s);
   }
-  /// Turns towards a yaw; returns the distance to it before the turn, rad.
+  /// Turns towards a yaw. Returns the difference before the turn, rad.
   double steer(double yaw) {
     const double off = yaw - place_.yaw;
     place_.yaw += std::clamp(4.0 * off, -most_turn_rate, most_turn_rate) * tick_s;
     return std::abs(off);
   }
-  /// The nearest yaw that faces +z: whole turns are kept, so that the path does not turn back.
+  /// Returns the nearest yaw that faces +z. Full turns are not undone.
   double home_yaw() const { return 2.0 * pi * std::round(place_.yaw / (2.0 * pi)); }
 
-  /// Turns in place to goal after goal, and back to the front in time.
+  /// Turns in place to each goal, and back to the front before the act ends.
   void turn(double t) {
     approach(0.0);
-    // Time to turn to the front, with a second to spare.
+    // Time for the turn to the front, plus one second.
     const double needed = std::abs(home_yaw() - place_.yaw) / most_turn_rate + 1.0;
     if (rest_from_ - t < needed) going_home_ = true;
     if (going_home_) {
@@ -110,10 +110,11 @@ class Walker {
     }
   }
 
-  /// Walks to goal after goal, and home in time to turn to the front.
+  /// Walks to each goal, and returns to the origin in time for the turn to the front.
   void walk(double t) {
     const double away = std::hypot(place_.x, place_.z);
-    // Time for the way home at 0.7 of the speed, for turning towards it and to the front again.
+    // Time for the way back at 0.7 of the speed, for turning towards the origin, and for turning to
+    // the front.
     const double needed = away / (0.7 * top_speed()) + (away > 0.15 ? pi / most_turn_rate : 0.0) +
                           std::abs(wrapped(place_.yaw)) / most_turn_rate + 1.5;
     if (rest_from_ - t < needed) going_home_ = true;
@@ -121,7 +122,7 @@ class Walker {
     const double dx = target.x - place_.x, dz = target.z - place_.z;
     const double distance = std::hypot(dx, dz);
     if (going_home_ && (turning_ || distance < 0.08)) {
-      turning_ = true;  // at home: turns to the front again
+      turning_ = true;  // at the origin: turns to the front
       approach(0.0);
       steer(home_yaw());
       return;
@@ -129,7 +130,7 @@ class Walker {
     if (!going_home_ && distance < arrival_m) choose();
     const double off = wrapped(std::atan2(dx, dz) - place_.yaw);
     steer(place_.yaw + off);
-    // The body slows down before a sharp turn and before the goal.
+    // The body slows down before a sharp turn and near the goal.
     const double ahead = std::max(0.0, std::cos(off));
     approach(std::min(top_speed() * ahead * ahead, std::sqrt(most_acceleration * distance)));
   }
@@ -148,13 +149,13 @@ struct Controls {
   std::vector<double> x, z, yaw;
 };
 
-/// Walks through all acts and records the point's position for each control.
+/// Walks through all acts and stores the point's position for each control point.
 Controls walked(const std::vector<Act>& acts, std::uint64_t seed, double scale) {
   Controls controls;
   Walker walker(seed, scale);
   std::optional<std::uint64_t> current;
   const auto count = static_cast<std::size_t>(acts.back().end_s / control_s) + 2;
-  // Positions are read before the ticks of their interval.
+  // The position is stored before the ticks of its interval.
   const auto ticks = static_cast<std::size_t>(std::lround(control_s / tick_s));
   for (std::size_t k = 0; k < count; ++k) {
     controls.x.push_back(walker.place().x);
@@ -173,8 +174,8 @@ Controls walked(const std::vector<Act>& acts, std::uint64_t seed, double scale) 
 
 }  // namespace
 
-// The first foot leaves 0.4 s after the act begins; the last one lands at least 0.3 s before its
-// end. An act without room for two steps has none.
+// The first foot leaves the floor 0.4 s after the act begins. The last foot lands at least 0.3 s
+// before the act ends. An act without time for two steps has no steps.
 StepTimes step_times(const Act& act) {
   StepTimes steps;
   if (!act.has_steps()) return steps;

@@ -12,9 +12,9 @@ struct FloorPlace {
   double yaw = 0.0;         // rad about +y from facing +z, not wrapped
 };
 
-/// The steps of an act. Foot k (alternating, the act's side first) leaves the floor at first_s + k
-/// stride_s / 2 and is in the air for swing_s.
-/// Both feet and the body go by these times, so they agree without asking each other.
+/// The times of the steps in one act (a part of the programme). The feet alternate; act.side is the
+/// first foot. Foot k leaves the floor at first_s + k stride_s / 2 and is in the air for swing_s.
+/// Feet and body use the same times, so their movements agree.
 struct StepTimes {
   double first_s = 0.0, stride_s = 1.0, swing_s = 0.4;
   std::size_t count = 0;
@@ -23,16 +23,16 @@ struct StepTimes {
   double lands(std::size_t k) const { return leaves(k) + swing_s; }
   double stance_s() const { return stride_s - swing_s; }
 };
-/// The step times of an act; none for an act without steps, or one too short for two.
+/// Returns the step times of an act. There are none if the act has no steps or is too short for two
+/// steps.
 StepTimes step_times(const Act& act);
 
-/// The path of the body, four times continuously differentiable. The body rests outside of the
-/// steps. It then stands at home if there was time to go there: at 0, 0, facing +z (yaw a multiple
-/// of a turn).
-/// Made once for a whole programme; asking does not change it.
+/// The path of the body, four times continuously differentiable. The body moves only during the
+/// steps. If there was time to return, it then stands at the origin, facing +z (yaw is a multiple
+/// of a full turn). The path is made once for a whole programme and does not change.
 class BodyPath {
  public:
-  /// `scale`: the person's size; 1: 1.75 m.
+  /// `scale`: size of the person; 1 means 1.75 m.
   BodyPath(const std::vector<Act>& acts, std::uint64_t seed, double scale);
 
   FloorPlace at(double t) const { return {x_.at(t), z_.at(t), yaw_.at(t)}; }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 104 of a seed: frequencies and phases of sway, breath and glances, by their number; lanes
-// 0 to 2 of number 10 are the person's style of holding feet and arms. Sway (5 mm), breath (half a
-// degree for each segment) and the movement of pelvis and trunk in walking (4 degrees) are
-// estimates.
+// Stream 104 of a seed gives frequencies and phases of sway, breath and glances, by their number.
+// Lanes 0 to 2 of number 10 give the person's style of holding feet and arms. These sizes are
+// estimates: sway (5 mm), breath (half a degree for each segment), and the movement of pelvis and
+// trunk in walking (4 degrees).
 #include "kinalign/simulate/person/built_in_body.h"
 
 #include "kinalign/motion/rotation.h"
@@ -16,18 +16,18 @@ namespace kinalign {
 namespace {
 
 using std::numbers::pi;
-// Longest distance of hip and ankle, as a share of the length of the leg's bones.
+// Longest distance between hip and ankle, as a share of the length of the leg's bones.
 constexpr double longest_leg = 0.9985;
 constexpr double bend_depth = 0.75;   // rad, of the pelvis
 constexpr double squat_depth = 0.30;  // m
-constexpr double deep = 1.3;          // depth of a deep squat in units of a usual one
+constexpr double deep = 1.3;          // depth of a deep squat relative to a usual squat
 
 Quat about_x(double angle) { return rotation(Vec3(angle, 0, 0)); }
 Quat about_y(double angle) { return rotation(Vec3(0, angle, 0)); }
 Quat about_z(double angle) { return rotation(Vec3(0, 0, angle)); }
 
-/// The repetitions of an act are bumps of equal length. Their number is the most that fits between
-/// its ends.
+/// Returns the size of the repeated movement at t. All repetitions of an act have the same length,
+/// and as many as possible fit into the act.
 double repeated(const Act& act, double t) {
   const double room = act.end_s - act.begin_s;
   const auto times = std::max(1.0, std::floor(room / act.tempo_s));
@@ -36,10 +36,10 @@ double repeated(const Act& act, double t) {
   return act.amplitude * bump(x - std::clamp(std::floor(x), 0.0, times - 1.0));
 }
 
-/// Makes both arms do the same.
+/// Gives both arms the same movement.
 void do_with_both(Doing& doing, const ArmDoing& arm) { doing.left = doing.right = arm; }
 
-/// A push: the hand comes before the chest, moves away from there and back, and is lowered.
+/// Returns a push: the hand moves to the chest, away from the chest, back, and down.
 ArmDoing push_of(const Repetition& one, double t) {
   const double x = one.share(t);
   ArmDoing arm;
@@ -48,8 +48,8 @@ ArmDoing push_of(const Repetition& one, double t) {
   return arm;
 }
 
-/// Adds the movement of a slow act. The curves are estimates; tests check that each stays within
-/// people's ranges.
+/// Adds the movement of a slow act. The curves are estimates. Tests check that each movement stays
+/// within the range of people.
 void do_slowly(const Act& act, double t, Doing& doing) {
   const Repetition& one = repetition_at(act.repetitions, t);
   const double size = one.size(t);
@@ -83,7 +83,8 @@ void do_slowly(const Act& act, double t, Doing& doing) {
   }
 }
 
-// Measures from the skeleton's end site at the toes. Feet stand as far apart as the hips.
+// Takes the measures from the toes' end site in the skeleton. The feet are as far apart as the
+// hips.
 FootShape foot_shape(const Skeleton& skeleton, const RandomStream& random) {
   const Vec3& toes = skeleton.end_sites.front().offset;
   return {-toes.y(), toes.z(), skeleton.rest_offsets[index(NeuronJoint::left_up_leg)].x(),
@@ -100,14 +101,14 @@ SlowNoise::SlowNoise(const RandomStream& random, std::uint64_t number, double le
   }
 }
 
-// Four sines have a mean square of 2 together; the factor makes the rms 1.
+// The mean square of the sum of four sines is 2. The factor makes the rms 1.
 double SlowNoise::at(double t) const {
   double sum = 0.0;
   for (std::size_t i = 0; i < rate_.size(); ++i) sum += std::sin(rate_[i] * t + phase_[i]);
   return std::numbers::sqrt2 / 2.0 * sum;
 }
 
-// All draws of the person come from `person`, all others from `seed`.
+// All random numbers about the person come from `person`, all others from `seed`.
 BuiltInBody::BuiltInBody(double height_m, std::uint64_t person, std::uint64_t seed,
                          std::vector<Act> acts)
     : skeleton_(perception_neuron(height_m, person)),
@@ -127,8 +128,8 @@ BuiltInBody::BuiltInBody(double height_m, std::uint64_t person, std::uint64_t se
       hang_(1.32 + 0.1 * RandomStream(person, 104).uniform(10, 1)),
       elbow_(0.2 + 0.15 * RandomStream(person, 104).uniform(10, 2)) {}
 
-/// Amount of each movement at t, by the act.
-/// A movement fades to nothing where one act meets the next, so there is no jump.
+/// Returns how far each movement is carried out at t. Movements fade out at the ends of an act, so
+/// there is no jump between acts.
 Doing BuiltInBody::doing_at(double t) const {
   const Act& act = act_at(acts_, t);
   Doing doing;
@@ -155,8 +156,8 @@ Doing BuiltInBody::doing_at(double t) const {
       if (steps.count == 0) break;
       const double end = steps.lands(steps.count - 1);
       doing.gait = rise((t - act.begin_s) / 1.0) * rise((end - t) / 1.0);
-      // Phase 0 is the moment at which the left foot leaves the floor, so it is shifted by half a
-      // turn if the right foot is first.
+      // At phase 0 the left foot leaves the floor. If the right foot is first, the phase is shifted
+      // by half a cycle.
       doing.gait_phase =
           2.0 * pi * (t - steps.first_s) / steps.stride_s + (act.side > 0 ? 0.0 : pi);
       const bool walks = act.piece == Piece::walk || act.piece == Piece::walk_turn;
@@ -172,12 +173,13 @@ Doing BuiltInBody::doing_at(double t) const {
   return doing;
 }
 
-/// The height of the pelvis at which the more stretched leg reaches its longest length.
-/// The smaller of both heights counts; a smooth minimum keeps the motion differentiable.
+/// Returns the height of the pelvis at which the more stretched leg has its greatest length: the
+/// lower of the heights for the two legs. A smooth minimum keeps the motion differentiable.
 double BuiltInBody::hip_height(const Pelvis& level, const FootState& left, const FootState& right,
                                double width) const {
   const double reach = longest_leg * (bones_.thigh + bones_.shank);
-  // The height above one foot. Feet that are too far apart leave at least half of the leg's length.
+  // The height above one foot. If the feet are too far apart, the height is half of the leg's
+  // length.
   const auto allowed = [&](NeuronJoint up_leg, const FootState& foot) {
     const Vec3 hip = level.rotation * skeleton_.rest_offsets[index(up_leg)];
     const double x = level.position.x() + hip.x() - foot.ankle.x();
@@ -189,12 +191,12 @@ double BuiltInBody::hip_height(const Pelvis& level, const FootState& left, const
                   allowed(NeuronJoint::right_up_leg, right), width);
 }
 
-/// Position and rotation of the pelvis, from the path, the steps and the act.
+/// Computes position and rotation of the pelvis from the path, the steps and the act.
 BuiltInBody::Pelvis BuiltInBody::pelvis_at(double t, const Doing& doing, const FootState& left,
                                            const FootState& right) const {
   const FloorPlace body = path_.at(t);
-  // The left foot is in the air for phases up to 0.8 pi. Meanwhile the body is above the right
-  // foot. The left hip is in front when the left foot lands.
+  // The left foot is in the air for phases from 0 to 0.8 pi. During this time the body is above the
+  // right foot. When the left foot lands, the left hip is in front.
   const double over = std::cos(doing.gait_phase - 0.4 * pi);
   const double front = std::cos(doing.gait_phase - 0.85 * pi);
   Pelvis pelvis;
@@ -207,14 +209,15 @@ BuiltInBody::Pelvis BuiltInBody::pelvis_at(double t, const Doing& doing, const F
       scale_ * (0.005 * sway_x_.at(t) - 0.022 * doing.gait * over - 0.05 * doing.lean);
   const double back = scale_ * (0.005 * sway_z_.at(t) - 0.11 * doing.bend - 0.13 * doing.squat);
   pelvis.position = Vec3(body.x, 0, body.z) + about_y(body.yaw) * Vec3(aside, 0, back);
-  // In walking the minimum is wider, so that the height changes smoothly from leg to leg.
+  // In walking the smooth minimum is wider, so that the height changes smoothly from one leg to the
+  // other.
   const double width = scale_ * (0.003 + 0.05 * doing.gait);
   pelvis.position.y() = hip_height(pelvis, left, right, width) - scale_ * squat_depth * doing.squat;
   return pelvis;
 }
 
-// The knee points between the directions of pelvis and foot. The three rotations are those that
-// bring the ankle to its place and the foot to its own rotation.
+// The knee points in the direction between those of pelvis and foot. Three rotations put the ankle
+// to its position and give the foot its own rotation.
 void BuiltInBody::put_leg(const Pelvis& pelvis, const FootState& foot, NeuronJoint up_leg,
                           Pose& pose) const {
   const std::size_t up = index(up_leg);
@@ -226,8 +229,8 @@ void BuiltInBody::put_leg(const Pelvis& pelvis, const FootState& foot, NeuronJoi
   pose.local_rotations[up + 2] = leg.shank.conjugate() * foot.rotation;
 }
 
-// The four segments of the spine share each movement. Breath bends the upper two against the lower
-// two.
+// The four segments of the spine share each movement. Breath bends the upper two segments relative
+// to the lower two.
 void BuiltInBody::put_trunk(double t, const Doing& doing, Pose& pose) const {
   const double front = doing.gait * doing.reach * std::cos(doing.gait_phase - 0.85 * pi);
   const double over = doing.gait * std::cos(doing.gait_phase - 0.4 * pi);
@@ -241,7 +244,7 @@ void BuiltInBody::put_trunk(double t, const Doing& doing, Pose& pose) const {
         about_x(pitch + chest * breath + 0.004 * nod_.at(t)) *
         about_z(0.012 * over - 0.11 * doing.lean);
   }
-  // The head compensates part of the trunk's bend, so that the eyes look ahead.
+  // The head compensates a part of the trunk's bend, so that the person looks ahead.
   const double bent = bend_depth * doing.bend + 0.35 * doing.squat + 4.0 * pitch;
   const double free = 1.0 - 0.7 * (1.0 - doing.down);  // in T-pose the person looks ahead
   for (const auto joint : {NeuronJoint::neck, NeuronJoint::head}) {
@@ -252,7 +255,7 @@ void BuiltInBody::put_trunk(double t, const Doing& doing, Pose& pose) const {
   }
 }
 
-/// Rotations of one arm's joints; `side` is +1 for the left arm.
+/// Computes the rotations of one arm's joints. `side` is +1 for the left arm.
 void BuiltInBody::put_arm(double t, const Doing& doing, double side, Pose& pose) const {
   const std::size_t shoulder =
       index(side > 0 ? NeuronJoint::left_shoulder : NeuronJoint::right_shoulder);
@@ -261,8 +264,8 @@ void BuiltInBody::put_arm(double t, const Doing& doing, double side, Pose& pose)
   const double front = doing.gait * std::cos(doing.gait_phase - 0.85 * pi);
   const double bent = bend_depth * doing.bend + 4.0 * 0.13 * doing.bend;
   const double slow = side * sway_x_.at(t + 7.0 * side) + breath_.at(t);
-  // An arm swings back (+) while the leg of its side moves forward. In a bend it swings forward, so
-  // that it hangs down.
+  // An arm swings backwards (+) while the leg of the same side moves forwards. If the trunk is
+  // bent, the arm rotates forwards so that it hangs down.
   const double swing =
       doing.down * (side * (0.08 + 0.27 * doing.reach) * front - 0.85 * bent - 1.1 * doing.squat +
                     0.01 * slow - 2.2 * arm.front - 0.4 * arm.guard - 0.95 * arm.reach);
@@ -272,7 +275,7 @@ void BuiltInBody::put_arm(double t, const Doing& doing, double side, Pose& pose)
   const double elbow = elbow_ * doing.down * (1.0 - wave) + wave * (1.35 + 0.42 * forth) +
                        0.15 * doing.gait * doing.reach * (1.0 - side * front) + 0.03 +
                        1.85 * arm.guard - 1.45 * arm.reach;
-  // Turns the forearm, which bends forward, so that it comes to point upwards.
+  // Turns the forearm, which is bent forwards, so that it points upwards.
   const double outward = -1.4 * wave;
   pose.local_rotations[shoulder] =
       about_z(side * (0.22 * wave + 0.003 * breath_.at(t) + 0.3 * arm.side + 0.2 * arm.front));
@@ -284,8 +287,8 @@ void BuiltInBody::put_arm(double t, const Doing& doing, double side, Pose& pose)
   put_fingers(0.3 * doing.down * (1.0 - 0.8 * wave), side, pose);
 }
 
-// Fingers are three joints each; a joint of the palm stands before each finger, not before the
-// thumb.
+// Each finger has three joints. Before each finger, but not before the thumb, there is a joint of
+// the palm.
 void BuiltInBody::put_fingers(double curl, double side, Pose& pose) const {
   const std::size_t thumb = index(side > 0 ? NeuronJoint::left_thumb1 : NeuronJoint::right_thumb1);
   for (std::size_t k = 0; k < 3; ++k) pose.local_rotations[thumb + k] = about_y(-side * 0.4 * curl);
@@ -297,8 +300,8 @@ void BuiltInBody::put_fingers(double curl, double side, Pose& pose) const {
   }
 }
 
-// Feet come first, because the pelvis may be only as high as the legs reach. Legs then follow from
-// both.
+// The feet are computed first, because the legs limit the height of the pelvis. The legs are then
+// computed from feet and pelvis.
 void BuiltInBody::pose_at(double t, Pose& pose) const {
   pose.local_positions = skeleton_.rest_offsets;
   pose.local_rotations.assign(neuron_joints, Quat::Identity());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The person of built_in_motion.h: the rotation of each joint, by the act and the time within it.
+// The person of built_in_motion.h: computes the rotation of each joint from the act and the time
+// within the act.
 #pragma once
 
 #include "kinalign/motion/pose.h"
@@ -12,10 +13,10 @@
 
 namespace kinalign {
 
-/// Sway, breath and glances: four sines of random phase, rms 1 over a long time.
+/// Sway, breath and glances: a sum of four sines with random phases; rms 1 over a long time.
 class SlowNoise {
  public:
-  /// Frequencies start at `least_hz` and span two and a half octaves.
+  /// The frequencies begin at `least_hz` and cover two and a half octaves.
   SlowNoise(const RandomStream& random, std::uint64_t number, double least_hz);
   double at(double t) const;
 
@@ -23,31 +24,31 @@ class SlowNoise {
   std::array<double, 4> rate_{}, phase_{};  // rad/s, rad
 };
 
-/// Amount of each slow movement in the pose of one arm; 1 corresponds to an amplitude of 1.
+/// How far each slow movement of one arm is carried out; 1 is a movement of amplitude 1.
 struct ArmDoing {
   double front = 0.0, side = 0.0;  // raised to the front; raised to the side
-  /// Guard: the hand is before the chest; reach: it is pushed away from there.
+  /// guard: the hand is before the chest; reach: the hand is pushed away from the chest
   double guard = 0.0, reach = 0.0;
 };
 
-/// Amount of each movement at a moment.
-/// It is computed from the act and turned into rotations by the put_ functions.
+/// How far each movement is carried out at a moment. doing_at() computes it from the act; the put_
+/// functions convert it to rotations.
 struct Doing {
-  double down = 1.0;  // arms hang down; 0 in T-pose
+  double down = 1.0;  // 1: arms hang down; 0: T-pose
   double wave = 0.0, wave_phase = 0.0;
-  double bend = 0.0, squat = 0.0;                    // 1 corresponds to an amplitude of 1
-  double gait = 0.0, gait_phase = 0.0, reach = 0.0;  // reach: 1 for walking at 0.8 m/s
+  double bend = 0.0, squat = 0.0;                    // 1: a movement of amplitude 1
+  double gait = 0.0, gait_phase = 0.0, reach = 0.0;  // reach: 1 when walking at 0.8 m/s
   double side = 1.0;                                 // side of the waving hand
-  double lean = 0.0, twist = 0.0;                    // movements of the trunk; positive to the left
+  double lean = 0.0, twist = 0.0;                    // of the trunk; positive to the left
   ArmDoing left, right;
 };
 
-/// A person with a programme: everything random is drawn when it is made, and `pose_at` only
+/// A person with a programme. All random numbers are drawn in the constructor, and `pose_at` only
 /// computes.
 class BuiltInBody {
  public:
-  /// `person` determines proportions and personal style; `seed` everything that differs from time
-  /// to time.
+  /// `person` determines proportions and personal style. `seed` determines everything that differs
+  /// between two performances.
   BuiltInBody(double height_m, std::uint64_t person, std::uint64_t seed, std::vector<Act> acts);
 
   void pose_at(double t, Pose& pose) const;
@@ -79,7 +80,7 @@ class BuiltInBody {
   LegBones bones_;
   FootTrack left_, right_;
   SlowNoise sway_x_, sway_z_, breath_, glance_, nod_, lean_;
-  double hang_, elbow_;  // rad: how far the upper arms hang down, and how far the elbows are bent
+  double hang_, elbow_;  // rad: how far the upper arms hang down and the elbows are bent
 };
 
 }  // namespace kinalign

@@ -13,7 +13,7 @@ Result<Motion> built_in_motion(const BuiltInOptions& options) {
   }
   double length = options.programme.empty() ? options.length_s : 0.0;
   for (const ProgrammePiece& piece : options.programme) {
-    // A negative length, or one that is no number, makes the sum invalid.
+    // A negative length, or a length that is not a number, makes the sum invalid.
     length = piece.length_s >= 0.0 ? length + piece.length_s : -1e9;
   }
   if (!(length >= 0.0 && length <= 1e6)) {

@@ -17,15 +17,15 @@ namespace kinalign {
 
 namespace {
 
-/// A joint of the body and its names in three kinds of skeletons. `next`: row of the joint to which
-/// its bone leads; -1: the joint takes the source's rotation.
+/// A joint of the body and its names in three kinds of skeletons. `next`: row of the joint at the
+/// end of its bone; -1: the joint gets the recorded rotation instead.
 struct CarriedJoint {
   NeuronJoint joint = NeuronJoint::hips;
   std::array<std::string_view, 3> names{};  // Perception Neuron, CMU by cgspeed, CMU's ASF
   int next = -1;
 };
 
-constexpr int tip = -2;  // `next` of a foot: its toes, which are no joint in any suit
+constexpr int tip = -2;  // `next` of a foot: its toes, which are not a joint
 
 constexpr std::array<CarriedJoint, 21> carried_joints{
     {{NeuronJoint::hips, {"Hips", "Hips", "root"}},
@@ -50,7 +50,7 @@ constexpr std::array<CarriedJoint, 21> carried_joints{
      {NeuronJoint::left_fore_arm, {"LeftForeArm", "LeftForeArm", "lradius"}, 20},
      {NeuronJoint::left_hand, {"LeftHand", "LeftHand", "lhand"}}}};
 
-/// The source's joint for each row of carried_joints.
+/// The joint of the source for each row of carried_joints.
 using SourceJoints = std::array<std::size_t, carried_joints.size()>;
 
 // Absent if one of the names of that kind is missing.
@@ -65,7 +65,7 @@ std::optional<SourceJoints> joints_of_kind(const Skeleton& skeleton, std::size_t
   return out;
 }
 
-// Positions of all joints in the rest pose.
+// Returns the positions of all joints in the rest pose.
 std::vector<Vec3> rest_places(const Skeleton& skeleton) {
   std::vector<Vec3> out;
   for (std::size_t j = 0; j < skeleton.joints(); ++j) {
@@ -76,7 +76,7 @@ std::vector<Vec3> rest_places(const Skeleton& skeleton) {
   return out;
 }
 
-/// Offset from a joint to its end site, or to its first child.
+/// Returns the offset from a joint to its end site or its first child.
 Vec3 tip_of(const Skeleton& skeleton, std::size_t joint) {
   for (const EndSite& end : skeleton.end_sites) {
     if (end.parent == static_cast<int>(joint)) return end.offset;
@@ -87,13 +87,12 @@ Vec3 tip_of(const Skeleton& skeleton, std::size_t joint) {
   return Vec3::Zero();
 }
 
-/// Poses a body like the source.
-/// A joint of the body takes a global rotation, so differences between the two hierarchies do not
-/// add up.
+/// Gives a body the poses of the source. Each joint of the body gets a global rotation, so
+/// differences between the two hierarchies do not accumulate.
 class Carrier {
  public:
-  /// Compares the two rest poses once: how each bone of the body must be turned to point like the
-  /// source's, and the ratio of the legs' lengths.
+  /// Compares the two rest poses once. This gives the rotation that turns each bone of the body
+  /// into the direction of the source's bone, and the ratio of the leg lengths.
   Carrier(Motion source, const SourceJoints& joints, Skeleton body)
       : source_(std::move(source)), joints_(joints), body_(std::move(body)) {
     const auto from = rest_places(source_.skeleton), to = rest_places(body_);
@@ -116,7 +115,7 @@ class Carrier {
     origin_.y() = 0.0;
   }
 
-  /// The root's position and all rotations of the body at time t.
+  /// Computes the root's position and all rotations of the body at time t.
   void pose_at(double t, Pose& pose) const {
     Pose local;
     GlobalPose global;
@@ -132,8 +131,8 @@ class Carrier {
       turned[j] = above;
       if (row_of_[j] < 0) continue;  // fingers stay in their rest pose
       const auto row = static_cast<std::size_t>(row_of_[j]);
-      // The global rotation of the source's joint, applied to a bone that points like the source's
-      // in the rest pose.
+      // The global rotation of the source's joint is applied to a bone that has the direction of
+      // the source's bone in the rest pose.
       turned[j] = (global.rotations[joints_[row]] * aligned_[row]).normalized();
       pose.local_rotations[j] = above.conjugate() * turned[j];
     }
@@ -163,15 +162,15 @@ class Carrier {
   SourceJoints joints_;
   Skeleton body_;
   std::array<int, neuron_joints> row_of_ = no_rows();  // row in carried_joints; -1: none
-  // Rotates the body's rest bone onto the source's.
+  // Rotates the body's bone in the rest pose to the direction of the source's bone.
   std::array<Quat, carried_joints.size()> aligned_{};
   double scale_ = 1.0;
   Vec3 origin_ = Vec3::Zero();
 };
 
-/// Time in the motion after `t` seconds of a single passage through `length_s` of it. The passage
-/// speeds up within `ramp_s`, keeps the motion's own speed, and slows down. It lasts length_s +
-/// ramp_s.
+/// Returns the time in the motion after `t` seconds of one passage through `length_s` of the
+/// motion. The passage accelerates during `ramp_s`, continues at the motion's own speed, and slows
+/// down during `ramp_s`. It lasts length_s + ramp_s.
 double way(double t, double length_s, double ramp_s) {
   const double all = length_s + ramp_s;
   if (t > 0.5 * all) return length_s - way(all - t, length_s, ramp_s);
@@ -182,7 +181,7 @@ double way(double t, double length_s, double ramp_s) {
 
 }  // namespace
 
-// The kinds of names are tried one after another.
+// Each kind of joint names is tried in turn.
 Result<Motion> carried_over(Motion source, Skeleton body) {
   for (std::size_t kind = 0; kind < 3; ++kind) {
     const auto joints = joints_of_kind(source.skeleton, kind);
@@ -209,7 +208,7 @@ Result<Motion> there_and_back(Motion motion, double begin_s, double end_s, doubl
   Skeleton skeleton = motion.skeleton;
   return Motion{std::move(skeleton), length_s,
                 [motion = std::move(motion), begin_s, own_s, ramp_s](double t, Pose& pose) {
-                  // One round: forth and back, each with its slowing down.
+                  // One round is a passage forwards and one backwards, both with their slow ends.
                   const double round = 2.0 * (own_s + ramp_s);
                   const double at = t - round * std::floor(t / round);
                   const bool back = at > 0.5 * round;

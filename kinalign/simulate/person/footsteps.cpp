@@ -10,9 +10,9 @@ namespace kinalign {
 
 namespace {
 
-constexpr double heel_before_s = 0.2;  // the heel leaves the floor this much before the toes
+constexpr double heel_before_s = 0.2;  // the heel leaves the floor this much earlier than the toes
 
-/// Position of the toes under a body at `body`.
+/// Returns the position of the toes if the body is at `body`.
 FloorPlace print_under(const FloorPlace& body, const FootShape& shape, double side, double narrow) {
   const double aside = side * shape.half_apart * narrow;
   const double yaw = body.yaw + side * shape.toes_out;
@@ -24,8 +24,8 @@ struct Gait {
   double narrow, lift_m, heel_rad;
 };
 
-/// Shape of a step that goes `far` m. In walking, toes are lifted by 3.5 cm, and by up to 6 cm in
-/// shorter steps.
+/// Returns the shape of a step of length `far`, m. In walking, the toes are lifted by 3.5 cm, in
+/// shorter steps by up to 6 cm.
 Gait gait_of(const Act& act, double far, double scale) {
   if (act.piece == Piece::step) return {1.0, 0.11 * scale * act.amplitude, 0.30 * act.amplitude};
   const double reach = std::min(far / (0.8 * scale), 1.0);
@@ -34,8 +34,8 @@ Gait gait_of(const Act& act, double far, double scale) {
 
 }  // namespace
 
-// Each step of this foot begins where the last one ended, so a foot never slides. Its goal is the
-// place under the body in the middle of the next stance.
+// Each step of a foot begins where its last step ended, so a foot never slides. The step ends below
+// the body's position in the middle of the next stance.
 FootTrack::FootTrack(const std::vector<Act>& acts, const BodyPath& path, const FootShape& shape,
                      double side, double scale)
     : shape_(shape), start_(print_under(path.at(0.0), shape, side, 1.0)) {
@@ -43,7 +43,7 @@ FootTrack::FootTrack(const std::vector<Act>& acts, const BodyPath& path, const F
   for (const Act& act : acts) {
     const StepTimes steps = step_times(act);
     for (std::size_t k = side == act.side ? 0 : 1; k < steps.count; k += 2) {
-      // In the middle of its stance a foot is under the body, or a little behind, because the heel
+      // In the middle of its stance a foot is below the body, or slightly behind, because the heel
       // rises.
       const FloorPlace body = path.at(steps.lands(k) + 0.46 * steps.stance_s());
       const double far = std::hypot(print_under(body, shape, side, 1.0).x - stands.x,
@@ -60,7 +60,7 @@ FootState FootTrack::at(double t) const {
   FootState foot;
   FloorPlace place = start_;
   double lift = 0.0, heel = 0.0;
-  // The heel rises before the swing begins, so the next swing is used if its heel rises already.
+  // The heel rises before the swing begins. The next swing is used as soon as its heel rises.
   const auto behind =
       std::upper_bound(swings_.begin(), swings_.end(), t + heel_before_s,
                        [](double at, const Swing& swing) { return at < swing.leaves_s; });
@@ -79,7 +79,7 @@ FootState FootTrack::at(double t) const {
   foot.yaw = place.yaw;
   foot.rotation = rotation(Vec3(0, place.yaw, 0)) * rotation(Vec3(heel, 0, 0));
   foot.toes = Vec3(place.x, lift, place.z);
-  // The toes are placed first; the ankle follows from the rotation of the foot.
+  // The toes are placed first; the ankle is computed from the rotation of the foot.
   foot.ankle = foot.toes - foot.rotation * Vec3(0.0, -shape_.height, shape_.length);
   return foot;
 }

@@ -8,8 +8,9 @@
 
 namespace kinalign {
 
-// Law of cosines: two sides are bones, the third is the distance from hip to ankle. The thigh is
-// turned forward by the angle at the hip, the shank back by the angle at the knee.
+// In the law of cosines, two sides are the bones and the third is the distance from hip to ankle.
+// The thigh is rotated forwards by the angle at the hip, the shank backwards by the angle at the
+// knee.
 BentLeg reach(const LegBones& bones, const Vec3& hip, const Vec3& ankle, const Vec3& forward) {
   const double a = bones.thigh, b = bones.shank;
   const Vec3 way = ankle - hip;

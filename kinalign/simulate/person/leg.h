@@ -10,14 +10,15 @@ struct LegBones {
   double thigh = 0.0, shank = 0.0;  // m
 };
 
-/// The rotations that bring a straight leg to the ankle.
+/// The rotations that move a straight leg so that it ends at the ankle.
 struct BentLeg {
   Quat thigh = Quat::Identity(), shank = Quat::Identity();  // global; at rest along -y, facing +z
   double knee = 0.0;  // rad; 0: straight, positive: bent backwards
 };
 
-/// `forward`: direction of the knee; only its part across the leg counts. If the ankle is out of
-/// reach, the leg is straight, or bent as far as the bones allow.
+/// `forward`: direction in which the knee points; only its component perpendicular to the leg
+/// matters. If the ankle is too far, the leg is straight; if it is too near, the leg is bent as far
+/// as possible.
 BentLeg reach(const LegBones& bones, const Vec3& hip, const Vec3& ankle, const Vec3& forward);
 
 }  // namespace kinalign

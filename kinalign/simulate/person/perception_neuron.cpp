@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 100 of a person's seed: lane 0 legs, 2 arms, 4 width of hips and shoulders, 6 feet. The
-// deviations are estimates from the spread of segments over stature in Drillis and Contini's
-// tables, as printed by Winter (Biomechanics and Motor Control of Human Movement, chapter 4).
+// Stream 100 of a person's seed has these lanes: 0 legs, 2 arms, 4 width of hips and shoulders, 6
+// feet. The deviations are estimates from the variation of segments relative to stature in Drillis
+// and Contini's tables, as printed by Winter (Biomechanics and Motor Control of Human Movement,
+// chapter 4).
 #include "kinalign/simulate/person/perception_neuron.h"
 
 #include "kinalign/simulate/random.h"
@@ -17,12 +18,13 @@ constexpr double file_height_m = 1.75;
 constexpr double leg_cm = 1.59 + 2.0 * 41.87 + 7.69;  // from the hips to the sole
 constexpr double trunk_cm = 14.307 + 9.718 + 10.12 + 9.718 + 10.387 + 9.47 + 15.95;
 
-/// Factors on the file's lengths.
+/// Factors for the lengths of the file.
 struct Proportions {
   double leg = 1.0, trunk = 1.0, arm = 1.0, width = 1.0, foot = 1.0;
 };
 
-// Deviations are clamped at two sd, so that no body is unnatural. The trunk makes up for the legs.
+// Deviations are limited to two standard deviations, so that no body is unnatural. The trunk
+// compensates for the legs.
 Proportions proportions(double height_m, std::uint64_t person) {
   const double scale = height_m / file_height_m;
   if (person == 0) return {scale, scale, scale, scale, scale};
@@ -40,12 +42,12 @@ Proportions proportions(double height_m, std::uint64_t person) {
   return of;
 }
 
-/// Adds joints in the order of the file; `side` is +1 for the left, -1 for the right.
+/// Adds joints in the order of the file. `side` is +1 for the left and -1 for the right.
 class Builder {
  public:
   explicit Builder(const Proportions& of) : of_(of) {}
 
-  /// Returns the index of the new joint. Parents must be added before their children.
+  /// Adds a joint and returns its index. Parents must be added before their children.
   int add(std::string name, int parent, const Vec3& offset_cm) {
     skeleton_.joint_names.push_back(std::move(name));
     skeleton_.parents.push_back(parent);
@@ -65,7 +67,7 @@ class Builder {
     end(foot, {0, -of_.leg * 7.69, of_.foot * 17.5});
   }
 
-  /// Adds the joints from the hips to the head. Returns the joint at which both shoulders begin.
+  /// Adds the joints from the hips to the head. Returns the joint at which the shoulders begin.
   int trunk(int hips) {
     const auto up = [&](double cm) -> Vec3 { return {0, of_.trunk * cm, 0}; };
     const int spine = add("Spine", hips, up(14.307));
@@ -94,7 +96,7 @@ class Builder {
     const double a = of_.arm;
     const std::string name = side_name + "Hand";
     finger(name + "Thumb", hand, {a * 2.5 * side, -a * 0.3, a * 3.0}, side);
-    double across = 2.4;  // cm from the middle of the hand forward to the finger's root
+    double across = 2.4;  // cm, from the middle of the hand forwards to the base of the finger
     for (const char* one : {"Index", "Middle", "Ring", "Pinky"}) {
       const int palm =
           add(side_name + "InHand" + one, hand, {a * 3.4 * side, a * 0.4, a * 0.6 * across});

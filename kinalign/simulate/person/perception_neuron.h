@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A body of any size on the skeleton that Perception Neuron suits write: 59 joints and 13 end
-// sites, the older («legacy») hierarchy. Its lengths come from a real file of a person of the class
-// 1.75 m. Those of the hands are estimates, because none of our sources states them.
+// A body of any size with the skeleton of Perception Neuron suits: 59 joints and 13 end sites, the
+// older («legacy») hierarchy. The lengths come from a real file of a person of 1.75 m. The lengths
+// of the hands are estimates, because no source states them.
 #pragma once
 
 #include "kinalign/motion/clip.h"
@@ -10,7 +10,7 @@
 
 namespace kinalign {
 
-/// The joints that are used, by their index in the hierarchy.
+/// The joints that the simulation uses, by their index in the hierarchy.
 enum class NeuronJoint : std::size_t {
   hips = 0,
   right_up_leg = 1,
@@ -39,10 +39,10 @@ enum class NeuronJoint : std::size_t {
 inline constexpr std::size_t neuron_joints = 59;
 constexpr std::size_t index(NeuronJoint joint) { return static_cast<std::size_t>(joint); }
 
-/// The rest pose is a T-pose: y up, facing +z, left is +x, palms down, soles at y = 0. `height_m`
-/// scales all lengths alike. A `person` other than 0 has individual legs, arms, trunk and widths,
-/// which deviate by some percent (sd) from those of the file, with the same height.
-/// `person` 0 is the person of the file, scaled.
+/// Returns the skeleton. The rest pose is a T-pose: y up, facing +z, +x to the left, palms down,
+/// soles at y = 0. `height_m` scales all lengths. `person` 0 is the person of the file. Other
+/// values of `person` give individual legs, arms, trunk and widths of the same height, which
+/// deviate from the file by some percent.
 Skeleton perception_neuron(double height_m, std::uint64_t person);
 
 }  // namespace kinalign

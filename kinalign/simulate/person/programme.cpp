@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 101 of a seed, by the act's number: lane 0 side, 1 amplitude, 2 tempo, 3 speed. Stream
-// 102, by the round: lanes 0 to 7 the order, 8 to 15 lengths.
+// Stream 101 of a seed, by the number of the act, has these lanes: 0 side, 1 amplitude, 2 tempo, 3
+// speed. Stream 102, by the number of the round: lanes 0 to 7 the order, 8 to 15 the lengths.
 #include "kinalign/simulate/person/programme.h"
 
 #include "kinalign/simulate/random.h"
@@ -13,7 +13,7 @@ namespace kinalign {
 
 namespace {
 
-/// s, in the default programme: long enough to walk away and come back.
+/// Returns the length in the default programme, s. It is long enough to walk away and return.
 double usual_length(Piece piece) {
   switch (piece) {
     case Piece::t_pose:
@@ -31,12 +31,12 @@ double usual_length(Piece piece) {
     case Piece::bend:
     case Piece::squat:
       return 7.0;
-    default:  // slow pieces are in no default programme
+    default:  // the default programme has no slow pieces
       return 0.0;
   }
 }
 
-/// s for one repetition: least and most.
+/// Returns the least and the greatest length of one repetition, s.
 std::pair<double, double> tempo(Piece piece) {
   switch (piece) {
     case Piece::wave:
@@ -59,7 +59,7 @@ std::pair<double, double> tempo(Piece piece) {
   }
 }
 
-/// An act of this piece with random side, size, tempo and speed.
+/// Returns an act of this piece with random side, size, tempo and speed.
 Act drawn(const RandomStream& random, std::uint64_t number, Piece piece) {
   const auto between = [&](std::uint64_t lane, double least, double most) {
     return least + (most - least) * random.uniform(number, lane);
@@ -90,7 +90,7 @@ Programme default_programme(double length_s, std::uint64_t seed) {
   for (std::uint64_t round = 0; end < length_s; ++round) {
     std::array<Piece, 8> order{Piece::stand, Piece::step, Piece::walk, Piece::walk_turn,
                                Piece::wave,  Piece::bend, Piece::turn, Piece::squat};
-    // Fisher and Yates' shuffle.
+    // Shuffle by Fisher and Yates.
     for (std::uint64_t i = order.size() - 1; i > 0; --i) {
       const auto other =
           static_cast<std::size_t>(random.uniform(round, i) * static_cast<double>(i + 1));
@@ -108,7 +108,7 @@ double Act::within(double t, double ramp_s) const {
   return (first ? 1.0 : rise((t - begin_s) / ramp)) * (last ? 1.0 : rise((end_s - t) / ramp));
 }
 
-// A programme without any length still gives one act, so that there is always an act to ask.
+// A programme without any length gives one act, so that there is always an act.
 std::vector<Act> acts_of(const Programme& programme, std::uint64_t seed) {
   const RandomStream random(seed, 101);
   std::vector<Act> acts;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 105 of a seed, by 4096 times the act's number plus that of the repetition: lane 0 length,
-// 1 and 2 duration forth and back, 3 amplitude.
+// Stream 105 of a seed, by 4096 times the number of the act plus the number of the repetition, has
+// these lanes: 0 length, 1 and 2 duration of the movement there and back, 3 amplitude.
 #include "kinalign/simulate/person/repetitions.h"
 
 #include "kinalign/simulate/random.h"
@@ -16,7 +16,7 @@ double Repetition::size(double t) const {
   return amplitude * rise(x / forth) * rise((1.0 - x) / back);
 }
 
-// Lengths are drawn first and then scaled together, so that they fill the period exactly.
+// The lengths are drawn first and then scaled, so that they fill the time exactly.
 std::vector<Repetition> drawn_repetitions(const RepetitionPlan& plan, std::uint64_t seed) {
   const RandomStream random(seed, 105);
   const double room = plan.end_s - plan.begin_s;

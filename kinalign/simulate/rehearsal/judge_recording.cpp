@@ -11,11 +11,10 @@ namespace kinalign {
 
 namespace {
 
-// True time of a stamp; absent if the truth does not cover it.
+// Converts a stamp to its true time; absent if the truth does not cover the stamp.
 using TrueTimes = std::function<std::optional<Time>(Time stamp)>;
 
-/// Calls `use` with each block of a stream of type `Input`.
-// Reads a stream from the front; only one block is in memory.
+/// Calls `use` with each block of a stream of type `Input`. Only one block is in memory.
 template <class Frames, class Input, class Use>
 Result<void> each_block(const Input& input, const Use& use) {
   Pass<Frames> pass = KA_TRY(input.passes());
@@ -24,7 +23,7 @@ Result<void> each_block(const Input& input, const Use& use) {
   return {};
 }
 
-/// The stamps of all samples of a stream.
+/// Returns the stamps of all samples of a stream.
 Result<std::vector<Time>> stamps_of(const RecordedStream& stream) {
   std::vector<Time> stamps;
   const auto add = [&](const auto& block) {
@@ -40,7 +39,7 @@ Result<std::vector<Time>> stamps_of(const RecordedStream& stream) {
   return stamps;
 }
 
-/// The node's name in a stream; empty for a stream without nodes.
+/// Returns the name of the node in a stream; empty for a stream without nodes.
 std::string node_of(const RecordedStream& stream) {
   const auto* imu = std::get_if<ImuInput>(&stream.data);
   return imu == nullptr || imu->node_names.empty() ? "" : imu->node_names.front();
@@ -55,9 +54,9 @@ const TrueNode* true_node(const TrueRecording& truth, const std::string& stream,
   return found == truth.nodes.end() ? nullptr : &*found;
 }
 
-/// Frames are evenly spaced. In a live recording, a stamp is the frame's number times the step.
-/// A suit's stamps are no times of a clock. Each stamp leads to a frame's number, and the truth
-/// knows the time of that frame.
+/// Returns the function from a suit's stamps to true times. The stamps are not those of a clock: in
+/// a live recording, a stamp is the frame number times the frame period. Each stamp therefore gives
+/// a frame number, and the truth contains the time of that frame.
 TrueTimes mocap_times(const TrueRecording& truth, Time first) {
   const TrueMocap& mocap = truth.mocap;
   const Time zero = truth.host ? Time{} : first;
@@ -68,7 +67,7 @@ TrueTimes mocap_times(const TrueRecording& truth, Time first) {
   };
 }
 
-/// "imu waist", or "mocap" for a stream without nodes.
+/// Returns "imu waist" for a node, or "mocap" for a stream without nodes.
 std::string device_name(const std::string& stream, const std::string& node) {
   return node.empty() ? stream : stream + " " + node;
 }
@@ -79,7 +78,8 @@ std::string true_devices(const TrueRecording& truth) {
   return names;
 }
 
-/// Function from the stream's stamps to true times; fails if the truth has no such device.
+/// Returns the function from the stream's stamps to true times. Fails if the truth does not contain
+/// the device.
 Result<TrueTimes> true_times(const RecordedStream& stream, const TrueRecording& truth, Time first) {
   if (stream.name == truth.mocap.stream) return mocap_times(truth, first);
   const TrueClock* clock = nullptr;
@@ -92,14 +92,13 @@ Result<TrueTimes> true_times(const RecordedStream& stream, const TrueRecording& 
   return TrueTimes([clock](Time stamp) { return true_time(*clock, stamp); });
 }
 
-// The sorted value at this share of the list, 0 to 1.
+// Returns the value at this share of the sorted list, 0 to 1.
 double quantile(const std::vector<double>& sorted, double share) {
   if (sorted.empty()) return 0.0;
   return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
 }
 
-/// Computes the root of a mean square.
-/// Adding up squares keeps no list of errors.
+/// Computes a root mean square from a sum of squares, without storing the errors.
 struct Rms {
   double sum = 0.0;
   std::uint64_t count = 0;
@@ -111,8 +110,7 @@ struct Rms {
   double value() const { return count == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(count)); }
 };
 
-/// The true pose at any time on the axis of the stamps.
-/// Asking for a pose overwrites the one before, so a caller must use it first.
+/// The true pose at any time on the axis of the stamps. Each pose overwrites the previous one.
 class TruthAt {
  public:
   explicit TruthAt(const JudgedTake& judged)
@@ -123,7 +121,7 @@ class TruthAt {
     forward_kinematics(motion_.skeleton, local_, global_);
     return global_;
   }
-  /// Rotation rate of each joint's bone, rad/s.
+  /// Returns the angular rate of each joint's bone, rad/s.
   std::vector<double> rates(Time t) {
     constexpr double h = 2e-3;
     const std::vector<Quat> before = pose(t, -h).rotations;
@@ -134,7 +132,7 @@ class TruthAt {
     }
     return rates;
   }
-  /// The number of joints if the motion has no joint of that name.
+  /// Returns the index of the joint. If the motion has no such joint, returns the number of joints.
   std::size_t joint(const std::string& name) const {
     const auto& names = motion_.skeleton.joint_names;
     return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
@@ -147,7 +145,7 @@ class TruthAt {
   GlobalPose global_;
 };
 
-// Nodes of one stream are separate streams of a recording with the same name.
+// Finds a stream. In a recording, each node has its own stream, and all have the same name.
 const RecordedStream* stream_of(const JudgedTake& judged, const std::string& name,
                                 const std::string& node = "") {
   for (const RecordedStream& stream : judged.recording.streams) {
@@ -156,8 +154,8 @@ const RecordedStream* stream_of(const JudgedTake& judged, const std::string& nam
   return nullptr;
 }
 
-/// Function from stamps to true times, both on the axis of the stamps.
-/// The recording's UTC may differ from that of the truth by `shift`.
+/// Returns the function from stamps to true times, both on the axis of the stamps. UTC of the
+/// recording may differ from UTC of the truth by `shift`.
 Result<TrueTimes> moved_times(const RecordedStream& stream, const JudgedTake& judged) {
   const std::vector<Time> stamps = KA_TRY(stamps_of(stream));
   const Time first = stamps.empty() ? Time{} : stamps.front();
@@ -168,7 +166,7 @@ Result<TrueTimes> moved_times(const RecordedStream& stream, const JudgedTake& ju
   });
 }
 
-/// Compares the joints of a skeleton's rows with the truth.
+/// Compares the joints in a skeleton's rows with the truth.
 ValueJudgement judge_clip(const JudgedTake& judged, std::size_t g, const ClipGroup& group) {
   TruthAt truth(judged);
   Rms error;
@@ -180,7 +178,7 @@ ValueJudgement judge_clip(const JudgedTake& judged, std::size_t g, const ClipGro
     if (!rows.valid.empty() && rows.valid[t] == 0) continue;
     const GlobalPose& pose = truth.pose(judged.take.all.stamps[t]);
     for (std::size_t j = 0; j < joints; ++j) {
-      // A joint that the motion does not have can't be judged.
+      // If the motion does not have the joint, the joint can't be judged.
       if (places[j] >= pose.positions.size()) continue;
       error.add((pose.positions[places[j]] - vec3(rows.positions, t * joints + j)).squaredNorm());
     }
@@ -193,7 +191,7 @@ ValueJudgement judge_clip(const JudgedTake& judged, std::size_t g, const ClipGro
           std::nullopt};
 }
 
-/// Compares the valid points of a take's rows with the truth.
+/// Compares the valid points in a take's rows with the truth.
 Rms points_in_take(const JudgedTake& judged, std::size_t g, const KinectMap& map) {
   TruthAt truth(judged);
   std::vector<double> known(3 * kinect_joints.size());
@@ -210,7 +208,8 @@ Rms points_in_take(const JudgedTake& judged, std::size_t g, const KinectMap& map
   return error;
 }
 
-/// Compares the points of a stream with the truth: as sent, with the true camera, and in the take.
+/// Compares the points of a stream with the truth: as sent, with the true camera position, and in
+/// the take.
 Result<ValueJudgement> judge_points(const JudgedTake& judged, std::size_t g) {
   const std::string& name = judged.take.header.groups[g].name;
   const KinectMap map = KA_TRY(kinect_map(judged.motion.skeleton));
@@ -231,7 +230,7 @@ Result<ValueJudgement> judge_points(const JudgedTake& judged, std::size_t g) {
       if (!at || block.state[i] == Tracking::missing) continue;
       const Vec3 seen = vec3(block.positions, i), real = vec3(known, j);
       before.add((real - seen).squaredNorm());
-      // With the true time and the true camera, only the sensor's own error remains.
+      // With the true time and the true camera position, only the sensor's own error is left.
       alone.add((real - camera * seen).squaredNorm());
     }
   };
@@ -240,7 +239,7 @@ Result<ValueJudgement> judge_points(const JudgedTake& judged, std::size_t g) {
   return ValueJudgement{name, "", after.count, before.value(), after.value(), alone.value()};
 }
 
-/// Compares one node with the truth: its column of the take, and its stream.
+/// Compares one node with the truth: its column in the take, and its stream.
 Result<ValueJudgement> judge_node(const JudgedTake& judged, std::size_t g, std::size_t column,
                                   std::size_t columns, const TrueNode& node) {
   const TakeGroup& group = judged.take.header.groups[g];
@@ -251,7 +250,7 @@ Result<ValueJudgement> judge_node(const JudgedTake& judged, std::size_t g, std::
   if (joint == judged.motion.skeleton.joints()) {
     return Failure(Error{"", 0, "a joint of the motion that " + name + " is worn on", node.joint});
   }
-  // The chip's filter delays the rate, so a value belongs to the truth that long before.
+  // The chip's filter delays the rate, so the true value is taken earlier by this delay.
   const Duration delay{std::llround(node.sensor_delay_ms * 1e6)};
   const auto off = [&](Time t, const Vec3& rate) {
     const double by = rate.norm() - truth.rates(t - delay).at(joint);
@@ -263,7 +262,7 @@ Result<ValueJudgement> judge_node(const JudgedTake& judged, std::size_t g, std::
     if (rows.valid[i] != 0)
       after.add(off(judged.take.all.stamps[t], vec3(rows.angular_velocity, i)));
   }
-  // The same comparison on the stream itself, without alignment.
+  // The same comparison for the stream without alignment.
   const RecordedStream* stream = stream_of(judged, group.name, name);
   if (stream == nullptr) return Failure(Error{"", 0, "the recording's node " + name, "none"});
   const TrueTimes times = KA_TRY(moved_times(*stream, judged));
@@ -276,7 +275,7 @@ Result<ValueJudgement> judge_node(const JudgedTake& judged, std::size_t g, std::
   return ValueJudgement{group.name, name, after.count, std::nullopt, after.value(), alone.value()};
 }
 
-// Without rates of rotation there is nothing to compare, so such a group gives no judgement.
+// If a group has no angular rates, it is not judged.
 Result<std::vector<ValueJudgement>> judge_nodes(const JudgedTake& judged, std::size_t g) {
   const TakeGroup& group = judged.take.header.groups[g];
   const auto& imu = std::get<ImuGroup>(group.kind);
@@ -291,7 +290,7 @@ Result<std::vector<ValueJudgement>> judge_nodes(const JudgedTake& judged, std::s
 
 }  // namespace
 
-// Stamps without a true time are left out of the count.
+// Stamps without a true time are not counted.
 Result<TimeJudgement> judge_time(const RecordedStream& stream, const TrueRecording& truth,
                                  Duration shift) {
   const std::vector<Time> stamps = KA_TRY(stamps_of(stream));
@@ -305,7 +304,7 @@ Result<TimeJudgement> judge_time(const RecordedStream& stream, const TrueRecordi
     const auto at = times(stamp);
     if (!at) continue;
     errors.push_back(std::abs(seconds(take_time(stream.clock, stamp) - (*at + shift))));
-    // An interval is checked only where the clock states one.
+    // The interval is checked only if the clock states one.
     const auto width = half_width(stream.clock, stamp);
     if (!width) continue;
     ++judgement.certified;
@@ -320,7 +319,7 @@ Result<TimeJudgement> judge_time(const RecordedStream& stream, const TrueRecordi
   return judgement;
 }
 
-// Mean squares add up with the number of rows; means of roots would not.
+// Mean squares are added, weighted by rows, because means of roots would be wrong.
 ValueJudgement together(std::span<const ValueJudgement> nodes) {
   ValueJudgement all{nodes.front().stream, "all nodes", 0, std::nullopt, 0.0, 0.0};
   for (const ValueJudgement& node : nodes) {
@@ -335,7 +334,7 @@ ValueJudgement together(std::span<const ValueJudgement> nodes) {
   return all;
 }
 
-// Groups of devices that the truth does not know are left out.
+// Groups whose devices are not in the truth are omitted.
 Result<std::vector<ValueJudgement>> judge_values(const JudgedTake& judged) {
   std::vector<ValueJudgement> out;
   const auto& groups = judged.take.header.groups;

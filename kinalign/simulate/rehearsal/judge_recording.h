@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares the recording of a simulated scene with the truth: the time that each sample was given,
-// and the values in the rows of a take.
+// Compares the recording of a simulated scene with the truth: the times of the samples, and the
+// values in the rows of a take.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -17,33 +17,34 @@
 
 namespace kinalign {
 
-/// Absolute errors of a device's stamps on the take's axis.
+/// Absolute errors of a device's stamps on the take's time axis.
 struct TimeJudgement {
   std::string stream, node;
   std::uint64_t samples = 0;
-  double median_s = 0.0, most_s = 0.0, worst_s = 0.0;  // most: 95 % of the errors are not greater
+  double median_s = 0.0, most_s = 0.0, worst_s = 0.0;  // most: 95 % of the errors are at most this
   std::optional<double> half_width_s;                  // greatest half-width of all intervals
-  /// Number of stamps with an interval, and of those whose error exceeds it.
+  /// Number of stamps with an interval, and number of those whose error exceeds the interval.
   std::uint64_t certified = 0, outside = 0;
 };
 
-/// `shift`: the recording's UTC minus that of the truth at the same instant. Fails if the truth has
-/// no such device, or if the stream can't be read.
+/// `shift`: UTC of the recording minus UTC of the truth at the same moment. Fails if the truth does
+/// not contain the device, or if the stream can't be read.
 Result<TimeJudgement> judge_time(const RecordedStream& stream, const TrueRecording& truth,
                                  Duration shift);
 
 /// Errors of a stream's values, rms: m for points and skeletons, rad/s for the rotation of nodes.
-/// `after` may be compared with `alone`: what alignment adds to the device's own error.
+/// The difference between `after` and `alone` is the error that alignment adds to the device's own
+/// error.
 struct ValueJudgement {
   std::string stream, node;
   std::uint64_t count = 0;
-  std::optional<double> before;  // error of the device's own values: points in the camera's space
-  double after = 0.0;            // in the take, compared with the truth at the row's stamp
-  /// The device's own noise: at true times and with the true position of the camera.
+  std::optional<double> before;  // error of the device's own values, with points in camera space
+  double after = 0.0;            // error in the take, compared with the truth at the row's stamp
+  /// The device's own error: with true times and the true position of the camera.
   std::optional<double> alone;
 };
 
-/// References only: all four must outlive the judging.
+/// References; all four objects must exist while the take is judged.
 struct JudgedTake {
   const Take& take;
   const Recording& recording;
@@ -52,11 +53,12 @@ struct JudgedTake {
   Duration shift{};
 };
 
-/// All nodes of a stream together, weighted by their rows in the take: "all nodes".
+/// Combines all nodes of a stream, weighted by their rows in the take: "all nodes".
 ValueJudgement together(std::span<const ValueJudgement> nodes);
 
-/// Judges every group of the take whose device is in the truth. For nodes it compares the speed of
-/// rotation, which does not depend on how they are worn: first each node, then all together.
+/// Judges every group of the take whose device is in the truth. Nodes are compared by the size of
+/// their angular rate, which does not depend on how they are worn. The result lists each node, then
+/// all together.
 Result<std::vector<ValueJudgement>> judge_values(const JudgedTake& judged);
 
 }  // namespace kinalign

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 120 of the seed: number 0 lanes 0 to 3 position of the camera, 4 and 5 its tilt, 6 its
-// clock; number 1 lanes 0 and 2 the clicks' latencies, 4 the phase of the suit's frames.
+// Stream 120 of the seed. Number 0 has these lanes: 0 to 3 position of the camera, 4 and 5 its
+// tilt, 6 its clock. Number 1: lanes 0 and 2 the latencies of the clicks, 4 the phase of the suit's
+// frames.
 #include "kinalign/simulate/rehearsal/rehearsal.h"
 
 #include "kinalign/motion/kinect_joints.h"
@@ -18,11 +19,11 @@ namespace {
 constexpr double before_click_s = 0.5, behind_click_s = 0.5;
 constexpr double degree = std::numbers::pi / 180.0;
 
-// All numbers of this file come from one stream; cameras, nodes and persons have their own.
+// This file uses only this stream. Cameras, nodes and persons have their own streams.
 RandomStream draws(std::uint64_t seed) { return {seed, 120}; }
 
-/// The joints that a camera reports, at any time.
-/// Keeps its poses between calls, so that later calls use the same memory.
+/// The true joints for the simulated camera, at any time. The memory for poses is reused in later
+/// calls.
 class JointsOf {
  public:
   JointsOf(const Motion& motion, const KinectMap& map) : motion_(motion), map_(map) {}
@@ -41,7 +42,7 @@ class JointsOf {
   GlobalPose global_;
 };
 
-/// Height of the lowest joint or end site, m: the floor.
+/// Returns the height of the lowest joint or end site, m, which is taken as the floor.
 double lowest_of(const Skeleton& skeleton, const GlobalPose& pose) {
   double lowest = pose.positions.front().y();
   for (const Vec3& p : pose.positions) lowest = std::min(lowest, p.y());
@@ -61,18 +62,18 @@ MocapRun mocap_run(double length_s, std::uint64_t seed) {
   };
   run.start_click_s = before_click_s;
   run.stop_click_s = length_s - behind_click_s;
-  // The phase is random, because a suit's frames have nothing to do with the clicks.
+  // The phase is random, because a suit's frames do not depend on the clicks.
   const double step = 1.0 / run.rate_hz, phase = step * random.uniform(1, 4);
   const double from = run.start_click_s + latency(0), to = run.stop_click_s + latency(2);
-  // The suit's frames run on; the recording begins with the first one after the click took effect.
+  // The suit makes frames all the time. The recording begins with the first frame after the click
+  // took effect.
   run.first_frame_s = phase + step * std::ceil((from - phase) / step);
   run.frames = static_cast<std::size_t>((to - run.first_frame_s) / step) + 1;
   return run;
 }
 
-/// Keeps the first pair, the last one, and one for each second: a crystal is steady enough in
-/// between.
-/// The truth of a long rehearsal would otherwise hold a pair for each sample.
+/// Keeps the first pair, the last pair, and one pair per second. A crystal is steady enough between
+/// them. Otherwise the truth of a long recording would contain a pair for each sample.
 TrueClock thinned(const TrueClock& all) {
   TrueClock clock;
   const std::size_t count = all.stamps_ns.size();
@@ -86,7 +87,7 @@ TrueClock thinned(const TrueClock& all) {
   return clock;
 }
 
-/// The camera's clock with the stamps of kinect_file(), which is right at the first frame.
+/// Returns the camera's clock for the stamps of kinect_file(), which is true at the first frame.
 TrueClock kinect_clock(const Rehearsal& rehearsal, Time zero) {
   TrueClock clock;
   const PointStream file = kinect_file(rehearsal, zero);
@@ -97,7 +98,7 @@ TrueClock kinect_clock(const Rehearsal& rehearsal, Time zero) {
   return thinned(clock);
 }
 
-/// Appends sample `i` of one node, with another stamp.
+/// Appends sample `i` of one node with another stamp.
 void append_sample(const ImuSamples& all, std::size_t i, Time stamp, ImuSamples& to) {
   const auto copy = [i](const std::vector<double>& from, std::size_t width,
                         std::vector<double>& onto) {
@@ -111,7 +112,7 @@ void append_sample(const ImuSamples& all, std::size_t i, Time stamp, ImuSamples&
   to.valid.push_back(1);
 }
 
-/// The truth about a node: where it is worn, its errors, and its clock.
+/// Returns the truth about a node: where it is worn, its errors, and its clock.
 TrueNode true_node(const SimulatedNode& node, const Motion& motion, Time zero) {
   TrueNode truth;
   truth.stream = "imu";
@@ -119,11 +120,11 @@ TrueNode true_node(const SimulatedNode& node, const Motion& motion, Time zero) {
   truth.joint = motion.skeleton.joint_names[node.mounting.joint];
   truth.offset = node.mounting.offset;
   truth.bone_from_sensor = node.mounting.bone_from_sensor;
-  // The delay of ChipLowPass, 0.205 / bandwidth, in ms.
+  // Delay of ChipLowPass, 0.205 / bandwidth, in ms.
   truth.sensor_delay_ms = 205.0 / InertialSensorModel{}.gyroscope_bandwidth_hz;
   truth.gyroscope_zero = node.errors.gyroscope_zero;
   truth.accelerometer_zero = node.errors.accelerometer_zero;
-  // The truth is stated for the stamps that a file of this node has.
+  // The truth refers to the stamps in a file of this node.
   const ImuStream file = node_file(node, zero);
   for (std::size_t i = 0; i < node.samples.size(); ++i) {
     truth.clock.stamps_ns.push_back(to_ns(file.samples.stamps[i]));
@@ -141,16 +142,17 @@ Result<RigidTransform> camera_before(const Motion& motion, std::uint64_t seed) {
   std::vector<double> joints(3 * kinect_joint_count);
   Vec3 sum = Vec3::Zero();
   int count = 0;
-  for (; count <= motion.length_s; ++count) {  // once a second
+  for (; count <= motion.length_s; ++count) {  // for each second
     joints_of(count, joints);
     sum += vec3(joints, spine_base);
   }
   joints_of(0.0, joints);
   const double floor = lowest_of(motion.skeleton, joints_of.global());
-  // The middle of the path, so that the person stays in view.
+  // The camera looks at the middle of the path, so that the person stays in view.
   const Vec3 middle = sum / count;
   Vec3 facing = (vec3(joints, hip_left) - vec3(joints, hip_right)).cross(Vec3::UnitY());
-  if (facing.norm() < 1e-3) facing = Vec3::UnitZ();  // hips above each other show no front
+  // If the hips are above each other, the front is unknown.
+  if (facing.norm() < 1e-3) facing = Vec3::UnitZ();
 
   const RandomStream random = draws(seed);
   const auto near = [&](std::uint64_t lane) { return 2.0 * random.uniform(0, lane) - 1.0; };
@@ -159,7 +161,7 @@ Result<RigidTransform> camera_before(const Motion& motion, std::uint64_t seed) {
   RigidTransform camera;
   camera.translation = Vec3(middle.x() + away * std::sin(yaw), floor + 1.05 + 0.15 * near(2),
                             middle.z() + away * std::cos(yaw));
-  // The camera looks back at the person: half a turn and some degrees off.
+  // The camera faces the person, with deviations of some degrees.
   camera.rotation =
       Quat(Eigen::AngleAxisd(yaw + std::numbers::pi + 3.0 * degree * near(3), Vec3::UnitY()) *
            Eigen::AngleAxisd(3.0 * degree * near(4), Vec3::UnitX()) *
@@ -167,8 +169,8 @@ Result<RigidTransform> camera_before(const Motion& motion, std::uint64_t seed) {
   return camera;
 }
 
-// The devices are simulated one after another, each with its own draws from the seed. So a change
-// of one device leaves the others as they were.
+// The devices are simulated one after another. Each has its own random numbers, so a change of one
+// device does not change the others.
 Result<Rehearsal> rehearse(const Motion& motion, const RehearsalOptions& options) {
   if (!(motion.length_s >= least_rehearsal_s)) {
     return Failure(
@@ -180,7 +182,7 @@ Result<Rehearsal> rehearse(const Motion& motion, const RehearsalOptions& options
 
   const KinectMap map = KA_TRY(kinect_map(motion.skeleton));
   done.camera.world_from_kinect = KA_TRY(camera_before(motion, seed));
-  // The sensor's crystal is at most 20 ppm off, like a node's.
+  // The error of the sensor's crystal is at most 20 ppm, as for a node.
   done.camera.drift_ppm = 40.0 * draws(seed).uniform(0, 6) - 20.0;
   const KinectIds ids{.seed = seed, .person = options.person.value_or(seed)};
   done.ticks = kinect_ticks(done.camera, ids, 0.0, motion.length_s);
@@ -194,7 +196,7 @@ Result<Rehearsal> rehearse(const Motion& motion, const RehearsalOptions& options
   return done;
 }
 
-// A block of the run; a long motion needs no memory for all of its frames.
+// Returns only a part of the run, so that a long motion needs little memory.
 ClipFrames mocap_frames(const Motion& motion, const MocapRun& run, std::size_t begin,
                         std::size_t end, Time zero) {
   const std::size_t joints = motion.skeleton.joints();
@@ -213,7 +215,8 @@ ClipFrames mocap_frames(const Motion& motion, const MocapRun& run, std::size_t b
   return frames;
 }
 
-// Only the first stamp is true. The others count the sensor's ticks from there, with its drift.
+// Only the first stamp is true. The others are counted from it by the sensor's clock with its
+// drift.
 PointStream kinect_file(const Rehearsal& rehearsal, Time zero) {
   PointStream stream{{kinect_joints.begin(), kinect_joints.end()}, rehearsal.kinect};
   if (rehearsal.ticks.empty()) return stream;
@@ -226,13 +229,13 @@ PointStream kinect_file(const Rehearsal& rehearsal, Time zero) {
   return stream;
 }
 
-// The counter's reading at time 0 is subtracted, so the stamp at time 0 is true and the drift shows
-// later.
+// The counter's reading at time 0 is subtracted. The stamp at time 0 is therefore true; later
+// stamps drift.
 ImuStream node_file(const SimulatedNode& node, Time zero) {
   return imu_stream(node, time_at(zero, -SimulatedClock(node.seed, 1.0).reading(0.0)));
 }
 
-// The link decides only which samples are lost. Stamps are the node's own.
+// The link decides only which samples are lost. The stamps are those of the node.
 ImuStream received_node(const SimulatedNode& node, Link link, Time zero) {
   const auto arrivals = transmit({.link = link}, node.seed, Way::up, node.truth.times);
   const ImuStream all = node_file(node, zero);
@@ -243,7 +246,7 @@ ImuStream received_node(const SimulatedNode& node, Link link, Time zero) {
   return out;
 }
 
-// Samples are sorted by arrival, as a host that stamps them would write them.
+// Samples are sorted by arrival, in the order in which a host would write them.
 ArrivedNode arrived_node(const SimulatedNode& node, Link link, Time zero) {
   const auto arrivals = transmit({.link = link}, node.seed, Way::up, node.truth.times);
   std::vector<std::pair<double, std::size_t>> arrived;  // arrival and index
@@ -261,7 +264,7 @@ ArrivedNode arrived_node(const SimulatedNode& node, Link link, Time zero) {
   return out;
 }
 
-// Names of streams are those that the simulated files have.
+// The stream names are those of the simulated files.
 TrueRecording truth_of(const Rehearsal& rehearsal, const Motion& motion, Time zero) {
   TrueRecording truth;
   truth.length_s = motion.length_s;
