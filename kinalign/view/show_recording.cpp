@@ -19,13 +19,12 @@ namespace kinalign {
 
 namespace {
 
-/// A stream that is being written.
-/// All kinds of stream look alike to show_streams(): the time of the next sample, and a call that
-/// writes it.
+/// A stream that is being written. show_streams() needs the same two functions for all kinds of
+/// streams: one returns the time of the next sample, the other writes the sample.
 class Showing {
  public:
   virtual ~Showing() = default;
-  /// The time of its next sample; absent after the last one.
+  /// Returns the time of the next sample; absent after the last one.
   virtual std::optional<Time> next() const = 0;
   virtual Result<void> show(ShownFile& out) = 0;
 };
@@ -34,8 +33,8 @@ const Skeleton& joints_of(const ClipInput& input) { return input.skeleton; }
 const std::vector<std::string>& joints_of(const PointInput& input) { return input.joint_names; }
 
 /// Writes the messages of a skeleton or of points (Input: ClipInput or PointInput). Every frame
-/// becomes a message to plot. Transforms are drawn, so only the frames that are due are written
-/// (ShownPace).
+/// becomes a message for plots. Transforms are drawn by viewers, so they are written only for some
+/// frames (ShownPace).
 template <class Input>
 class ShowJoints {
  public:
@@ -67,7 +66,7 @@ class ShowJoints {
   std::uint16_t transforms_ = 0, plotted_ = 0;
 };
 
-/// One channel for each node. Nodes have no place, so they have no transforms.
+/// Writes one channel for each node. Nodes have no position, so they have no transforms.
 class ShowImu {
  public:
   static Result<ShowImu> begin(const std::string& stream, const ImuInput& input, ShownFile& out) {
@@ -92,8 +91,8 @@ class ShowImu {
   std::vector<std::uint16_t> nodes_;
 };
 
-/// Reads a stream block by block. `block_` holds the samples from `row_` on, and next_ the time of
-/// the first of them; both are brought up to date after each sample.
+/// Reads a stream block by block. `block_` contains the samples from `row_` on, and next_ is the
+/// time of the first of them. Both are updated after each sample.
 template <class Frames, class Show>
 class StreamShowing final : public Showing {
  public:
@@ -103,7 +102,7 @@ class StreamShowing final : public Showing {
   Result<void> begin() { return fill(); }
   std::optional<Time> next() const override { return next_; }
   Result<void> show(ShownFile& out) override {
-    // The half-width is that of the device's clock model at this stamp.
+    // The half-width comes from the device's clock model at this stamp.
     const ShownTime time{*next_, half_width(*clock_, block_.stamps[row_])};
     KA_TRY(show_(block_, row_, time, pace_.shows(time.at), out));
     ++row_;
@@ -112,7 +111,7 @@ class StreamShowing final : public Showing {
 
  private:
   Result<void> fill() {
-    // A block may be empty although more follow, so this repeats.
+    // The loop repeats, because a block may be empty although more blocks follow.
     while (!ended_ && row_ >= block_.size()) {
       ended_ = !KA_TRY(pass_(block_));
       row_ = 0;
@@ -143,16 +142,17 @@ Result<std::unique_ptr<Showing>> showing_of(const RecordedStream& stream, const 
   return std::unique_ptr<Showing>(std::move(showing));
 }
 
-/// The recording's own JSON: marks, counts, the host's clocks.
-/// Its messages are copied unchanged, with the recording's log times. Chunks are read one by one.
+/// Copies the recording's own JSON messages: marks, counts, the host's clocks. The messages and
+/// their log times are unchanged. Chunks are read one at a time.
 class ShowJson final : public Showing {
  public:
   ShowJson(MessagePass pass, std::map<std::uint16_t, std::uint16_t> channels)
       : pass_(std::move(pass)), channels_(std::move(channels)) {}
 
   static Result<std::unique_ptr<Showing>> begin(const RecordingSource& recording, ShownFile& out) {
-    // Ids of channels differ between the two files, because ours has other channels as well.
-    std::map<std::uint16_t, std::uint16_t> channels;  // the recording's id -> ours
+    // The ids of channels differ between the two files, because the new file has other channels
+    // too.
+    std::map<std::uint16_t, std::uint16_t> channels;  // id in the recording -> id in the new file
     std::vector<std::uint16_t> ids;
     for (const JsonChannel& one : recording.json_channels()) {
       channels[one.id] = KA_TRY(out.add_channel(one.topic, one.schema));
@@ -169,7 +169,7 @@ class ShowJson final : public Showing {
   }
   Result<void> show(ShownFile& out) override {
     const Message& message = messages_[row_];
-    // These messages have one time, the host's.
+    // These messages have only one time, the host's.
     const Time at = *next();
     KA_TRY(out.add(channels_.at(message.channel), at, at, message.json));
     ++row_;
@@ -202,14 +202,14 @@ class ShowJson final : public Showing {
   bool ended_ = false;
 };
 
-/// Writes all streams in the order of their samples' times. `rows`: the number of their samples.
-/// A merge of sorted streams: `next` is ordered by time and has each stream at most once. Viewers
-/// need messages in this order to play a file.
+/// Writes all streams in the order of their samples' times, because viewers need this order.
+/// `rows`: number of samples. Sorted streams are merged: `next` is ordered by time and contains
+/// each stream at most once.
 Result<void> show_streams(const std::vector<std::unique_ptr<Showing>>& streams, std::uint64_t rows,
                           ShownFile& shown, const Progress& progress) {
   // Time of the next sample, and the index of its stream.
   std::set<std::pair<Time, std::size_t>> next;
-  // A stream that has ended is not put back.
+  // A stream that has ended is not inserted again.
   const auto wait = [&](std::size_t i) {
     if (const auto at = streams[i]->next()) next.emplace(*at, i);
   };
@@ -218,7 +218,7 @@ Result<void> show_streams(const std::vector<std::unique_ptr<Showing>>& streams, 
     const std::size_t first = next.extract(next.begin()).value().second;
     KA_TRY(streams[first]->show(shown));
     wait(first);
-    // A call for each sample would cost more than the sample.
+    // Progress is reported seldom, because a call for each sample would cost more than the sample.
     if (done % 1024 == 0 && !go_on(progress, "converting", done, rows)) {
       return Failure(interruption());
     }
@@ -230,7 +230,7 @@ Result<void> show_streams(const std::vector<std::unique_ptr<Showing>>& streams, 
 
 Result<Findings> show_recording(FileSystem& files, const Recording& recording,
                                 const ShowFiles& paths, const Progress& progress) {
-  // The file gets its name only at commit(), so a conversion that fails leaves none.
+  // The file gets its name in commit(), so a failed conversion leaves no file.
   OutputFile file = KA_TRY(OutputFile::create(files, paths.out, paths.overwrite));
   ShownFile shown(file);
   KA_TRY(shown.begin());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the streams of a recording or of a file as an MCAP file of JSON that Foxglove and
-// Lichtblick show: every sample at its time on UTC, skeletons also as frame transforms.
-// docs/formats/shown.md.
+// Writes the streams of a recording or of a file as an MCAP file of JSON, which Foxglove and
+// Lichtblick can display. Every sample has its time in UTC; skeletons are also written as frame
+// transforms. The layout is in docs/formats/shown.md.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -14,7 +14,7 @@
 
 namespace kinalign {
 
-/// The output, and the file whose own messages go along.
+/// The output file, and the recording whose own messages are copied.
 struct ShowFiles {
   /// The recording whose JSON channels (marks, counts, the host's clocks) are copied; nullptr:
   /// none.
@@ -23,8 +23,8 @@ struct ShowFiles {
   Overwrite overwrite = Overwrite::no;
 };
 
-/// Messages are written in the order of their times. Messages that were left out are a finding.
-/// `recording` is read once, all streams side by side.
+/// Writes the file. Messages are in the order of their times. Omitted messages are reported as a
+/// finding. `recording` is read once, all streams in parallel.
 Result<Findings> show_recording(FileSystem& files, const Recording& recording,
                                 const ShowFiles& paths, const Progress& progress = {});
 

@@ -16,8 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// One schema for all streams: a sample has only its values. Names of channels are in the stream's
-/// header, which is attached.
+/// All streams have the same schema, because a sample contains only values. The names of channels
+/// are in the stream's header, which is attached.
 McapSchema sample_schema() {
   return {0, "kinalign.XdfSample", "jsonschema",
           R"({"type": "object", "properties": {"stamp": {"type": "number", "description": )"
@@ -27,15 +27,15 @@ McapSchema sample_schema() {
           R"("one a channel; of numbers NaN, Infinity and -Infinity as these words"}}})"};
 }
 
-/// The time of a log entry; absent if a recorder can't have such a time.
-/// A recorder counts seconds, often from the start of its machine; 4e9 s after 1970 is in 2096.
+/// Returns the time of a log entry; absent if a recorder can't have such a time. A recorder counts
+/// seconds, often from the start of its machine. 4e9 s after 1970 is in 2096.
 std::optional<Time> time_of(double s) {
   constexpr double latest_s = 4e9;
   if (!(s >= 0.0) || s > latest_s) return std::nullopt;
   return utc_time(std::llround(s * 1e9));
 }
 
-/// JSON has no NaN and no infinity; they are written as in protobuf's JSON,
+/// Converts a number. JSON has no NaN and no infinity, so they are written as in protobuf's JSON,
 /// https://protobuf.dev/programming-guides/json/
 Json value_json(double value) {
   if (std::isnan(value)) return "NaN";
@@ -45,8 +45,8 @@ Json value_json(double value) {
 Json value_json(std::int64_t value) { return value; }
 Json value_json(const std::string& value) { return value; }
 
-/// A sample with its stamp, whether the stamp was deduced, and its values.
-/// A sample has one value for each channel; all values of a stream have one type.
+/// Returns a sample with its stamp, whether the stamp was computed, and its values. A sample has
+/// one value for each channel. All values of a stream have the same type.
 std::string sample_json(const XdfSamples& samples, std::size_t t) {
   Json values = Json::array();
   std::visit(
@@ -61,9 +61,9 @@ std::string sample_json(const XdfSamples& samples, std::size_t t) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// A channel's name: the stream's name without slashes and blanks, with its id if other streams
-/// have the same name.
-/// Viewers take a slash for a level of a tree, and blanks are awkward in their paths.
+/// Returns a channel's name: the stream's name without slashes and spaces. If other streams have
+/// the same name, the id is added. Viewers would show a slash as a level of a tree, and spaces
+/// cause problems in their paths.
 std::string topic_of(const XdfStream& stream, bool alone) {
   std::string name = stream.name.empty() ? "stream" : stream.name;
   for (char& c : name) {
@@ -72,14 +72,14 @@ std::string topic_of(const XdfStream& stream, bool alone) {
   return alone ? "/" + name : "/" + name + "/" + std::to_string(stream.id);
 }
 
-/// A stream's channel, and its clock.
+/// A stream's channel and its clock.
 struct Channel {
   std::uint16_t id = 0;
   std::vector<XdfClockLine> lines;
 };
 using Channels = std::map<std::uint32_t, Channel>;  // by the stream's id
 
-/// Adds a channel and the header of each stream. Attachments come first in the file.
+/// Adds a channel and the header of each stream. Attachments are at the beginning of the file.
 Result<Channels> add_channels(const XdfSurvey& survey, ShownFile& out) {
   std::map<std::string, std::set<std::uint32_t>> ids;  // by the stream's name
   for (const XdfStreamSurvey& one : survey.streams) ids[one.stream.name].insert(one.stream.id);
@@ -92,8 +92,8 @@ Result<Channels> add_channels(const XdfSurvey& survey, ShownFile& out) {
   return channels;
 }
 
-/// Writes samples as messages and returns the number of those whose stamps are no times. They are
-/// counted and not refused: the other samples are good.
+/// Writes samples as messages. Returns the number of samples whose stamps are not times. These are
+/// only counted, because the other samples are good.
 Result<std::uint64_t> add_samples(const XdfSamples& samples, const Channel& channel,
                                   ShownFile& out) {
   std::uint64_t timeless = 0;
@@ -112,7 +112,7 @@ Result<std::uint64_t> add_samples(const XdfSamples& samples, const Channel& chan
 
 Result<Findings> show_xdf(FileSystem& files, const std::string& from, const std::string& out,
                           Overwrite overwrite, const Progress& progress) {
-  // The file is read twice: for the clocks of its streams, then for the samples.
+  // The file is read twice: first for the clocks of its streams, then for the samples.
   const XdfSurvey survey = KA_TRY(survey_xdf(files, from, progress));
   OutputFile file = KA_TRY(OutputFile::create(files, out, overwrite));
   ShownFile shown(file);
@@ -123,7 +123,7 @@ Result<Findings> show_xdf(FileSystem& files, const std::string& from, const std:
   found.all = KA_TRY(read_xdf(files, from, progress, [&](const XdfItem& item) -> Result<void> {
     const auto* samples = std::get_if<XdfSamples>(&item);
     if (samples == nullptr) return {};
-    // Samples of a stream without a header can't be described.
+    // A stream without a header has no description, so its samples are omitted.
     const auto channel = channels.find(samples->stream);
     if (channel != channels.end())
       timeless += KA_TRY(add_samples(*samples, channel->second, shown));

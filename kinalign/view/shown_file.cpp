@@ -18,13 +18,13 @@ Result<void> ShownFile::attach(std::string name, std::string description) {
 }
 
 Result<std::uint16_t> ShownFile::add_channel(std::string topic, McapSchema schema) {
-  // MCAP has 16 bits for them.
+  // MCAP ids of channels have 16 bits.
   constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max();
   if (channels_.size() == most) {
     return Failure(Error{path_, 0, "at most " + std::to_string(most) + " channels", "more"});
   }
   const auto next = static_cast<std::uint16_t>(schemas_.size() + 1);
-  // Many channels share a schema; ids count from 1, because MCAP's 0 means none.
+  // Channels may share a schema. Ids begin at 1, because 0 means no schema in MCAP.
   const auto [known, is_new] = schema_ids_.try_emplace(schema.name, next);
   schema.id = known->second;
   channels_.push_back(
@@ -39,14 +39,14 @@ Result<void> ShownFile::add(std::uint16_t channel, Time at, Time device, std::st
     ++too_early_;
     return {};
   }
-  // A chunk must be readable by itself, so the first message of a channel brings its description.
+  // Each chunk must be readable alone, so a channel's definition precedes its first message.
   if (!chunk_.messages().contains(channel)) {
     const McapChannel& described = channels_[channel - 1U];
     chunk_.add(schemas_[described.schema_id - 1U]);
     chunk_.add(described);
   }
   const auto log = static_cast<std::uint64_t>(to_ns(at));
-  // A device's own stamp may be negative; MCAP has no negative times.
+  // A device's own stamp may be negative, but MCAP has no negative times.
   const auto published = static_cast<std::uint64_t>(std::max<std::int64_t>(0, to_ns(device)));
   chunk_.add(McapMessage{channel, numbers_[channel - 1U]++, log, published, json});
   constexpr std::size_t chunk_bytes = std::size_t{1} << 20;
@@ -68,7 +68,7 @@ Findings ShownFile::findings() const {
   return out.all;
 }
 
-// Compressed with zstd, which viewers read; JSON shrinks a lot.
+// The chunk is compressed with zstd, which viewers can read. JSON becomes much smaller.
 Result<void> ShownFile::close_chunk() {
   if (chunk_.empty()) return {};
   return writer_.write(store(std::exchange(chunk_, {}), McapCompression::zstd));

@@ -28,7 +28,7 @@ McapSchema schema(std::string name, const std::string& properties) {
 Json time_json(Time at) {
   const std::int64_t ns = to_ns(at);
   constexpr std::int64_t second = 1'000'000'000;
-  // Division rounds towards zero; `nsec` must never be negative.
+  // Division rounds towards zero, but `nsec` must not be negative.
   const std::int64_t sec = ns / second - (ns % second < 0 ? 1 : 0);
   return {{"sec", sec}, {"nsec", ns - sec * second}};
 }
@@ -38,12 +38,13 @@ Json rotation_json(const Quat& q) {
   return {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}};
 }
 
-/// Names come from files, so bytes that are not UTF-8 are replaced and do not stop the conversion.
+/// Names in files may contain bytes that are not UTF-8. They are replaced, so that the conversion
+/// continues.
 std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// A transform in the words of viewers: the place and turn of `child` in the space of `parent`.
+/// A transform as viewers define it: position and rotation of `child` in the space of `parent`.
 struct Frame {
   std::string parent, child;
   Vec3 place = Vec3::Zero();
@@ -58,11 +59,11 @@ Json frame_json(const Frame& frame, const Json& time) {
           {"rotation", rotation_json(frame.turn)}};
 }
 
-/// The transforms, with the turn from the viewers' world to ours as the first.
-/// Foxglove's message holds all transforms of one instant.
+/// Returns the transforms of one moment as one message. The first transform rotates from `world` to
+/// `lab`.
 std::string frames_json(const std::vector<Frame>& frames, const ShownTime& time) {
   const Json at = time_json(time.at);
-  // A quarter turn about x: our y becomes the viewers' z.
+  // A quarter turn about x: y in `lab` becomes z in `world`.
   const double half = std::numbers::sqrt2 / 2.0;
   Json list = {
       frame_json({"world", std::string(shown_space), Vec3::Zero(), {half, half, 0, 0}}, at)};
@@ -70,15 +71,15 @@ std::string frames_json(const std::vector<Frame>& frames, const ShownTime& time)
   return text_of({{"transforms", std::move(list)}});
 }
 
-/// A message begins with its time, for programs that don't look at log times.
+/// A message begins with its time, for programs that don't read log times.
 Json begun_json(const ShownTime& time) {
   Json json{{"timestamp", time_json(time.at)}};
   if (time.half_width) json["interval_ns"] = time.half_width->count();
   return json;
 }
 
-/// The nearest ancestor of a Kinect's joint that is not missing; absent if there is none.
-/// The root is its own parent in kinect_parents, which ends the loop.
+/// Returns the nearest ancestor of a Kinect's joint that is not missing; absent if there is none.
+/// In kinect_parents the root is its own parent, which ends the loop.
 std::optional<std::size_t> ancestor(const PointFrames& frames, std::size_t row, std::size_t joint) {
   while (kinect_parents[joint] != joint) {
     joint = kinect_parents[joint];
@@ -89,7 +90,7 @@ std::optional<std::size_t> ancestor(const PointFrames& frames, std::size_t row, 
 
 }  // namespace
 
-/// The JSON schema of foxglove.FrameTransforms.
+/// Returns the JSON schema of foxglove.FrameTransforms.
 McapSchema transforms_schema() {
   return {0, "foxglove.FrameTransforms", "jsonschema",
           R"({"type": "object", "properties": {"transforms": {"type": "array", "items": )"
@@ -116,7 +117,7 @@ std::string transforms_json(const std::string& stream, const Skeleton& skeleton,
   for (std::size_t j = 0; j < skeleton.joints(); ++j) {
     const std::size_t at = t * skeleton.joints() + j;
     const int parent = skeleton.parents[j];
-    // A root's place is in the lab, where the device saw it.
+    // A root's position is in the lab, where the device saw it.
     out.push_back({parent < 0
                        ? std::string(shown_space)
                        : stream + "/" + skeleton.joint_names[static_cast<std::size_t>(parent)],
@@ -129,7 +130,7 @@ std::string transforms_json(const std::string& stream, const Skeleton& skeleton,
 std::string transforms_json(const std::string& stream, const std::vector<std::string>& joints,
                             const PointFrames& frames, std::size_t t, const ShownTime& time) {
   const std::size_t row = t * joints.size();
-  // Other points have no known bones, so each is placed in the lab.
+  // Bones of other points are not known, so each point is in the lab's space.
   const bool kinect =
       std::equal(joints.begin(), joints.end(), kinect_joints.begin(), kinect_joints.end());
   std::vector<Frame> out;
@@ -137,8 +138,8 @@ std::string transforms_json(const std::string& stream, const std::vector<std::st
     if (frames.state[row + j] == Tracking::missing) continue;
     const auto parent = kinect ? ancestor(frames, row, j) : std::nullopt;
     const Vec3 place = vec3(frames.positions, row + j);
-    // Points have places only; the difference is the place in the parent's space, since nothing
-    // turns.
+    // Points have no rotation, so the position in the parent's space is the difference of
+    // positions.
     const Vec3 from = parent ? Vec3(vec3(frames.positions, row + *parent)) : Vec3(Vec3::Zero());
     out.push_back({parent ? stream + "/" + joints[*parent] : std::string(shown_space),
                    stream + "/" + joints[j], place - from, Quat::Identity()});
@@ -146,7 +147,7 @@ std::string transforms_json(const std::string& stream, const std::vector<std::st
   return frames_json(out, time);
 }
 
-/// A pose: each joint's position and rotation in its parent's space.
+/// Returns a pose: each joint's position and rotation in its parent's space.
 std::string joints_json(const Skeleton& skeleton, const ClipFrames& frames, std::size_t t,
                         const ShownTime& time) {
   Json json = begun_json(time), joints = Json::object();
@@ -160,7 +161,7 @@ std::string joints_json(const Skeleton& skeleton, const ClipFrames& frames, std:
   return text_of(json);
 }
 
-/// Points with their states; a missing point has no position.
+/// Returns points with their states. A missing point has no position.
 std::string joints_json(const std::vector<std::string>& joints, const PointFrames& frames,
                         std::size_t t, const ShownTime& time) {
   constexpr std::array<std::string_view, 3> states{"missing", "inferred", "tracked"};
@@ -181,7 +182,7 @@ std::string imu_json(const ImuContent& content, const ImuSamples& samples, std::
                      const ShownTime& time) {
   Json json = begun_json(time);
   json["valid"] = samples.valid[cell] != 0;
-  // A sample that is not valid has no values, but its time is shown.
+  // An invalid sample has no values, but its time is written.
   if (samples.valid[cell] == 0) return text_of(json);
   if (content.orientation) json["orientation"] = rotation_json(quat(samples.orientation, cell));
   if (content.acceleration) json["acceleration"] = vector_json(vec3(samples.acceleration, cell));

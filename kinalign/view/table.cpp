@@ -15,7 +15,7 @@ namespace kinalign {
 
 namespace {
 
-/// The words of --format.
+/// The values of the option --format.
 constexpr std::array<std::pair<std::string_view, TableFormat>, 5> formats{
     {{"text", TableFormat::text},
      {"markdown", TableFormat::markdown},
@@ -23,7 +23,7 @@ constexpr std::array<std::pair<std::string_view, TableFormat>, 5> formats{
      {"csv", TableFormat::csv},
      {"json", TableFormat::json}}};
 
-/// The text with some characters replaced.
+/// Returns the text with some characters replaced.
 std::string replaced(std::string_view text,
                      const std::vector<std::pair<char, std::string_view>>& by) {
   std::string out;
@@ -39,12 +39,12 @@ std::string replaced(std::string_view text,
   return out;
 }
 
-/// Characters that would end a cell, begin HTML, or be taken for emphasis.
+/// Escapes characters that would end a cell, begin HTML or mean emphasis.
 std::string for_markdown(std::string_view text) {
   return replaced(text, {{'|', "\\|"}, {'\n', " "}, {'<', "&lt;"}, {'*', "\\*"}, {'_', "\\_"}});
 }
 
-/// The text with LaTeX's special characters escaped.
+/// Escapes LaTeX's special characters.
 std::string for_latex(std::string_view text) {
   return replaced(text, {{'\\', "\\textbackslash{}"},
                          {'&', "\\&"},
@@ -59,13 +59,14 @@ std::string for_latex(std::string_view text) {
                          {'\n', " "}});
 }
 
-/// The number of code points, which is the width on a terminal but for East Asian letters.
+/// Returns the number of code points. It equals the width on a terminal, except for East Asian
+/// letters.
 std::size_t width_of(std::string_view text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
-/// The titles of the columns, then the cells of each row, for people.
+/// Returns the titles of the columns, then the cells of each row, as text for readers.
 std::vector<std::vector<std::string>> texts_of(const Table& table) {
   std::vector<std::vector<std::string>> lines(1);
   for (const TableColumn& column : table.columns) lines[0].push_back(column.title);
@@ -78,8 +79,8 @@ std::vector<std::vector<std::string>> texts_of(const Table& table) {
   return lines;
 }
 
-/// The table as text, in columns of one width; numbers are right-aligned.
-/// Two passes: the widths of all columns, then the lines.
+/// Returns the table as text in aligned columns; numbers are right-aligned. The widths of all
+/// columns are computed first, then the lines.
 std::string text_of(const Table& table) {
   const std::vector<bool> right = numeric_columns(table);
   const auto lines = texts_of(table);
@@ -95,13 +96,13 @@ std::string text_of(const Table& table) {
       const std::string room(widths[c] - width_of(line[c]), ' ');
       text += (c == 0 ? "" : "  ") + (right[c] ? room + line[c] : line[c] + room);
     }
-    // No blanks at the ends of lines, so that a table can stand in a file under version control.
+    // Lines have no trailing spaces, so that the text can be kept under version control.
     out += text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
   }
   return out;
 }
 
-/// The table in Markdown.
+/// Returns the table in Markdown.
 std::string markdown_of(const Table& table) {
   std::string out = table.caption.empty() ? "" : for_markdown(table.caption) + "\n\n";
   const auto lines = texts_of(table);
@@ -117,8 +118,8 @@ std::string markdown_of(const Table& table) {
   return out;
 }
 
-/// The table in LaTeX; a line separates a row of sums.
-/// A table environment of its own, to be put into a paper; it needs no package.
+/// Returns the table in LaTeX. A line separates the row of sums. The text is a complete table
+/// environment that needs no package.
 std::string latex_of(const Table& table) {
   std::string places;
   for (const bool right : numeric_columns(table)) places += right ? 'r' : 'l';
@@ -134,13 +135,14 @@ std::string latex_of(const Table& table) {
   return out + "\\hline\n\\end{tabular}\n\\end{table}\n";
 }
 
-/// RFC 4180: a cell with a comma, a quote or a line end is quoted, and quotes within are doubled.
+/// Returns a CSV cell by RFC 4180: a cell with a comma, a quote or a line end is quoted, and quotes
+/// in it are doubled.
 std::string csv_cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   return "\"" + replaced(text, {{'"', "\"\""}}) + "\"";
 }
 
-/// The table as CSV: keys in the first line, numbers with all digits.
+/// Returns the table as CSV: keys in the first line, numbers with all digits.
 std::string csv_of(const Table& table) {
   std::string out;
   for (const TableColumn& column : table.columns) {
@@ -150,7 +152,7 @@ std::string csv_of(const Table& table) {
     out += "\n";
     for (std::size_t c = 0; c < row.size(); ++c) {
       if (c > 0) out += ",";
-      // An unknown value is an empty cell.
+      // An unknown value gives an empty cell.
       if (const auto* text = std::get_if<std::string>(&row[c])) out += csv_cell(*text);
       if (const auto* whole = std::get_if<std::int64_t>(&row[c])) out += fmt::format("{}", *whole);
       if (const auto* number = std::get_if<double>(&row[c])) out += fmt::format("{}", *number);
@@ -159,7 +161,7 @@ std::string csv_of(const Table& table) {
   return out + "\n";
 }
 
-/// The table as JSON; an unknown value is null.
+/// Returns the table as JSON. An unknown value is null.
 std::string json_of(const Table& table) {
   auto rows = nlohmann::ordered_json::array();
   for (const auto& row : table.rows) {
@@ -195,7 +197,7 @@ std::string cell_text(const Cell& cell, const TableColumn& column) {
   return "–";
 }
 
-// Unknown values fit both kinds, so a column of them alone counts as text.
+// An unknown value may be in any column, so a column with only unknown values counts as text.
 std::vector<bool> numeric_columns(const Table& table) {
   std::vector<bool> out;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A table as data, written as text, Markdown, LaTeX, CSV or JSON; the numbers are the same in all
-// of them.
+// A table as data. It can be written as text, Markdown, LaTeX, CSV or JSON with the same numbers.
 #pragma once
 
 #include <cstdint>
@@ -14,39 +13,40 @@ namespace kinalign {
 
 /// Empty (monostate) if the value is not known.
 using Cell = std::variant<std::monostate, std::int64_t, double, std::string>;
-/// An absent value gives an empty cell and not a zero, which would look like a perfect mark.
+/// An absent value gives an empty cell. A zero would look like a perfect result.
 inline Cell cell_of(const std::optional<double>& value) { return value ? Cell(*value) : Cell(); }
 
-/// `key` never changes, because other programs read it; `title` may.
+/// A column. `key` never changes, because other programs read it; `title` may change.
 struct TableColumn {
   std::string key;    // in CSV and JSON: "height_cm"
-  std::string title;  // for people: "height, cm"
-  int decimals = 0;   // for people; CSV and JSON have all digits
+  std::string title;  // for readers: "height, cm"
+  int decimals = 0;   // for readers; CSV and JSON have all digits
 };
 
-/// Made by the verb, written here. A number stays a number until it is written, so that formats can
-/// differ in its digits.
+/// A table. A cell keeps its number until the table is written, because formats differ in the
+/// number of digits.
 struct Table {
   std::string caption;
   std::vector<TableColumn> columns;
   std::vector<std::vector<Cell>> rows;  // each as wide as the columns
-  bool has_sum = false;                 // the last row sums up the others
+  bool has_sum = false;                 // the last row contains sums of the other rows
 };
 
-/// A cell for people: digits grouped by thousands, the column's decimals, "–" if not known.
-/// For text, Markdown, LaTeX and HTML.
+/// Returns a cell as text for readers: digits grouped by thousands, the column's decimals, "–" if
+/// not known. Used for text, Markdown, LaTeX and HTML.
 std::string cell_text(const Cell& cell, const TableColumn& column);
-/// True for columns with only numbers, which are right-aligned.
+/// Returns which columns contain only numbers; these are right-aligned.
 std::vector<bool> numeric_columns(const Table& table);
 
 enum class TableFormat { text, markdown, latex, csv, json };
 
-/// The format by its name: "text", "markdown", "latex", "csv", "json"; absent for any other word.
+/// Returns the format by its name: "text", "markdown", "latex", "csv", "json"; absent for other
+/// names.
 std::optional<TableFormat> table_format(std::string_view name);
 
-/// The table in that format; the text ends with a line end. Text, Markdown and LaTeX group digits
-/// by thousands; text has aligned columns; CSV is RFC 4180 with a line of keys and LF; JSON is an
-/// array of objects.
+/// Returns the table in that format, ending with a line end. Text, Markdown and LaTeX group digits
+/// by thousands. Text has aligned columns. CSV follows RFC 4180 with a line of keys, and lines end
+/// with LF. JSON is an array of objects.
 std::string written(const Table& table, TableFormat format);
 
 }  // namespace kinalign

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fixed parts of the page; the build embeds them in the library (cmake/embed_page.cmake).
+// The constant parts of the page. The build embeds them in the library (cmake/embed_page.cmake).
 #pragma once
 
 #include <string_view>
 
 namespace kinalign {
 
-// Constant texts in the program.
+// All functions return constant texts in the program.
 std::string_view dataset_script();    // assets/table.js
-std::string_view dataset_style();     // assets/dataset.css, after the style of a take's page
+std::string_view dataset_style();     // assets/dataset.css, used after the style of a take's page
 std::string_view dataset_template();  // assets/dataset.html
 
 }  // namespace kinalign

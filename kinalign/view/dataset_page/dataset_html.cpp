@@ -19,18 +19,18 @@ namespace kinalign {
 
 namespace {
 
-/// A count with its noun: "1 take", "12 takes".
+/// Returns a count with its noun: "1 take", "12 takes".
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many) {
   return fmt::format("{} {}", grouped(count), count == 1 ? one : many);
 }
 
-/// The verdicts in the order of the page, worst first.
+/// Returns the number of takes for each verdict, the worst verdict first.
 std::array<std::pair<std::string_view, std::uint64_t>, 3> verdicts_of(const DatasetPage& page) {
   return {{{"bad", page.bad}, {"usable", page.usable}, {"good", page.good}}};
 }
 
-/// The line below the title: "3 bad, 12 usable, 385 good".
-/// Verdicts without a take are not named.
+/// Returns the line below the title: "3 bad, 12 usable, 385 good". Verdicts without takes are
+/// omitted.
 std::string headline(const DatasetPage& page) {
   if (page.takes == 0) return "no takes yet";
   std::string out;
@@ -40,20 +40,21 @@ std::string headline(const DatasetPage& page) {
   return out;
 }
 
-/// One bad take makes the headline red, because somebody has to look at it.
+/// Returns the verdict that colours the headline. One bad take makes it red, because a user must
+/// look at that take.
 std::string_view quality(const DatasetPage& page) {
   if (page.takes == 0) return "";
   return page.bad > 0 ? "bad" : page.usable > 0 ? "usable" : "good";
 }
 
-/// A bar whose parts are the shares of the verdicts.
+/// Returns a bar whose parts are the shares of the verdicts.
 std::string verdict_bar(const DatasetPage& page) {
   if (page.takes == 0) return "";
   std::string out = fmt::format(
       "<svg class=\"verdict-bar\" viewBox=\"0 0 100 1\" preserveAspectRatio=\"none\" role=\"img\" "
       "aria-label=\"{}\">",
       headline(page));
-  // Each part begins where the one before ends.
+  // Each part begins at the end of the previous part.
   double at = 0.0;
   for (const auto& [word, count] : verdicts_of(page)) {
     const double share = 100.0 * static_cast<double>(count) / static_cast<double>(page.takes);
@@ -64,7 +65,7 @@ std::string verdict_bar(const DatasetPage& page) {
   return out + "</svg>";
 }
 
-/// One line below the headline: takes, people, length, licence.
+/// Returns the line below the headline: takes, people, length, licence.
 std::string facts_of(const DatasetPage& page) {
   std::vector<std::string> facts{counted(page.takes, "take", "takes"),
                                  counted(page.people, "person", "people"),
@@ -73,7 +74,7 @@ std::string facts_of(const DatasetPage& page) {
   return escaped(fmt::format("{}", fmt::join(facts, " · ")));
 }
 
-/// The counts of frames, in all and by modality.
+/// Returns the numbers of frames, in total and for each modality.
 std::string numbers_of(const DatasetPage& page) {
   std::string out;
   const auto add = [&out](const std::string& number, std::string_view what) {
@@ -87,12 +88,12 @@ std::string numbers_of(const DatasetPage& page) {
   return out;
 }
 
-// A dash, because an empty cell would look like a fault of the page.
+// Returns a number or a dash. An empty cell would look like a fault of the page.
 std::string number_or_none(const std::optional<double>& value, double factor) {
   return value ? fmt::format("{:.1f}", factor * *value) : "–";
 }
 
-/// The modalities that a take has, in the paper's order.
+/// Returns the modalities of a take, in the order of the HFUT-MMD paper.
 std::string streams_of(const DatasetTake& take) {
   std::vector<std::string_view> names;
   if (take.has_mocap) names.emplace_back("mocap");
@@ -101,16 +102,16 @@ std::string streams_of(const DatasetTake& take) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// A second line within a cell; nothing if there is no text.
+/// Returns a second line for a cell, or nothing if there is no text.
 std::string small(std::string_view text) {
   return text.empty() ? "" : fmt::format("<small>{}</small>", escaped(text));
 }
 
-/// A row of the table. Its cells have the order of the head in assets/dataset.html.
-/// The class is an attribute, because the filter of the page needs it and no column shows it.
+/// Returns a table row. Its cells have the order of the head in assets/dataset.html. The class is
+/// an attribute, because the filter of the page needs it and no column shows it.
 std::string row_of(const DatasetTake& take) {
   const std::string name = escaped(take.name);
-  // A take without a page of its own has a name and no link.
+  // If a take has no page, its name is not a link.
   const std::string link = take.page.empty()
                                ? fmt::format("<span>{}</span>", name)
                                : fmt::format("<a href=\"{}\">{}</a>", escaped(take.page), name);
@@ -129,8 +130,8 @@ std::string row_of(const DatasetTake& take) {
   return out;
 }
 
-/// Licence, citation and contact of the data set.
-/// A missing licence is stated, since a data set without one can hardly be used by others.
+/// Returns licence, citation and contact of the data set. A missing licence is stated, because
+/// other people need a licence to use the data.
 std::string about_list(const DatasetPage& page) {
   const std::array<std::pair<std::string_view, const std::string*>, 3> texts{
       {{"Licence", &page.licence}, {"Citation", &page.citation}, {"Contact", &page.contact}}};
@@ -142,8 +143,9 @@ std::string about_list(const DatasetPage& page) {
   return out;
 }
 
-/// A sentence about takes that the table leaves out; empty if it has all.
-/// The command lists all takes, because a page of thousands of pictures would be too large.
+/// Returns a sentence about takes that are not in the table; empty if all are. The table is
+/// limited, because a page with thousands of pictures would be too large. The stated command lists
+/// all takes.
 std::string cut_of(const DatasetPage& page) {
   if (page.worst.size() == page.takes) return "";
   return fmt::format(
@@ -151,7 +153,7 @@ std::string cut_of(const DatasetPage& page) {
       grouped(page.worst.size()), grouped(page.takes), escaped(page.folder));
 }
 
-/// The command that makes missing pages; empty if there are none.
+/// Returns the command that makes missing pages; empty if no page is missing.
 std::string pages_of(const DatasetPage& page) {
   if (page.takes_without_page == 0) return "";
   const std::string who =
@@ -162,7 +164,7 @@ std::string pages_of(const DatasetPage& page) {
                      escaped(page.folder));
 }
 
-/// Manifests that were added but not built have no take to show.
+/// States how many manifests were added but not built, because the table does not contain them.
 std::string not_built_of(const DatasetPage& page) {
   if (page.not_built == 0) return "";
   return fmt::format("{} not built and not in the table: <code>kinalign dataset build {}</code>.",
@@ -171,9 +173,9 @@ std::string not_built_of(const DatasetPage& page) {
 
 }  // namespace
 
-/// Fills the page's template with its parts.
+/// Fills the template of the page.
 std::string dataset_html(const DatasetPage& page) {
-  // The policy allows exactly this style, so both sheets are one text.
+  // The policy allows exactly one style, so both style sheets are joined.
   const std::string style = std::string(page_style()) + std::string(dataset_style());
   PageParts parts;
   parts["policy"] = page_policy(dataset_script(), style);
@@ -189,7 +191,7 @@ std::string dataset_html(const DatasetPage& page) {
   parts["description"] = escaped(page.description);
   parts["numbers"] = numbers_of(page);
   parts["not_built"] = not_built_of(page);
-  // Worst first; the script can sort them in other ways.
+  // The worst takes come first. The script can sort them differently.
   for (const DatasetTake& take : page.worst) parts["rows"] += row_of(take);
   parts["cut"] = cut_of(page);
   parts["pages"] = pages_of(page);

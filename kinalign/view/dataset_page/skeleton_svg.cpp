@@ -14,13 +14,14 @@ namespace kinalign {
 
 namespace {
 
-// Units of the picture. A unit is half a pixel, since the picture is shown at half its size.
+// Units of the picture. A unit is half a pixel, because the picture is displayed at half its size.
 constexpr double width = 120.0, height = 160.0, margin = 6.0;
-constexpr double most_units_per_m = 90.0;  // a small body, from a file in other units, stays small
-constexpr double farthest_m = 1000.0;      // farther places are broken numbers and would shrink the
-                                           // picture
+// The scale is limited: a body that is small because of wrong units stays small in the picture.
+constexpr double most_units_per_m = 90.0;
+// A position farther away is an error and would make the rest of the picture too small.
+constexpr double farthest_m = 1000.0;
 
-/// In metres, in the take's space, before it is drawn.
+/// A bone in metres, in the take's space, before projection.
 struct Bone {
   Vec3 from, to;
   bool inferred = false;
@@ -32,13 +33,13 @@ struct Dot {
   bool inferred = false;
 };
 
-/// A body as the picture needs it: two lists with one colour.
+/// The parts of a body that are drawn, all in one colour.
 struct Drawn {
   std::string_view colour;
   std::vector<Bone> bones;
   std::vector<Dot> dots;
 
-  /// All places that the picture has to contain.
+  /// Returns all positions that the picture must contain.
   std::vector<Vec3> places() const {
     std::vector<Vec3> out;
     for (const Bone& bone : bones) out.insert(out.end(), {bone.from, bone.to});
@@ -51,7 +52,7 @@ bool is_drawable(const Vec3& place) {
   return place.allFinite() && place.cwiseAbs().maxCoeff() < farthest_m;
 }
 
-/// A joint is on a bone if it has a parent or a child.
+/// Returns which joints belong to a bone: those with a parent or a child.
 std::vector<bool> joints_on_bones(const PageBody& body) {
   std::vector<bool> out(body.parents.size(), false);
   for (std::size_t j = 0; j < body.parents.size(); ++j) {
@@ -62,7 +63,7 @@ std::vector<bool> joints_on_bones(const PageBody& body) {
   return out;
 }
 
-/// The bones and dots of a body. Parts with a missing end, or too far away, are left out.
+/// Returns the bones and dots of a body. Parts that are missing or too far away are omitted.
 Drawn drawn(const PageBody& body) {
   Drawn out{to_string(body.colour), {}, {}};
   const auto state = [&body](std::size_t joint) {
@@ -74,7 +75,7 @@ Drawn drawn(const PageBody& body) {
   };
   const std::vector<bool> on_bone = joints_on_bones(body);
   for (std::size_t j = 0; j < body.parents.size(); ++j) {
-    // A root stands for its own parent here, so that its state and place are checked alike.
+    // A root has no parent, so its own index is used here; the checks below then apply to it too.
     const bool has_parent = body.parents[j] >= 0;
     const std::size_t p = has_parent ? static_cast<std::size_t>(body.parents[j]) : j;
     const Tracking least = std::min(state(j), state(p));
@@ -86,8 +87,8 @@ Drawn drawn(const PageBody& body) {
   return out;
 }
 
-/// The horizontal axis along which the lower ends of bones and the dots are spread most; its sign
-/// is towards +x, else +z.
+/// Returns the horizontal axis with the largest spread of the lower ends of bones and of the dots.
+/// The axis points towards +x, or else towards +z.
 Vec3 widest_axis(const std::vector<Drawn>& bodies) {
   double n = 0.0, x = 0.0, z = 0.0, xx = 0.0, xz = 0.0, zz = 0.0;
   const auto add = [&](const Vec3& place) {
@@ -108,9 +109,8 @@ Vec3 widest_axis(const std::vector<Drawn>& bodies) {
   return {std::cos(angle), 0.0, std::sin(angle)};  // within 90 degrees of +x
 }
 
-/// Converts metres into units of the picture.
-/// All bodies share it, so that they stand to each other as in the take. The scale is the smallest
-/// that the limits ask for.
+/// Converts metres to units of the picture. All bodies have the same conversion, so their relative
+/// positions are as in the take. The scale is the smallest of those that the limits allow.
 class Camera {
  public:
   explicit Camera(const std::vector<Drawn>& bodies) : axis_(widest_axis(bodies)) {
@@ -138,17 +138,18 @@ class Camera {
   double bottom_ = left_, top_ = -left_, scale_ = 1.0;
 };
 
-/// The path of all bones that are inferred, or of all others. Bones shorter than a pixel are left
-/// out.
+/// Returns the path of all inferred bones, or of all other bones. Bones shorter than a pixel are
+/// omitted.
 std::string path_of(const std::vector<Bone>& bones, bool inferred, const Camera& camera) {
   std::string out;
   std::pair<int, int> pen{-1, -1};
   for (const Bone& bone : bones) {
     if (bone.inferred != inferred) continue;
-    // Whole units keep the text short; a fraction of half a pixel can't be seen.
+    // Integers keep the text short; fractions of half a pixel are not visible.
     const auto from = camera.at(bone.from), to = camera.at(bone.to);
     if (std::abs(from.first - to.first) + std::abs(from.second - to.second) < 3) continue;
-    // A chain of bones needs only one move, which keeps a page of hundreds of pictures small.
+    // Connected bones need only one "M" command, which keeps a page with hundreds of pictures
+    // small.
     if (from != pen) out += fmt::format("M{} {}", from.first, from.second);
     out += fmt::format("L{} {}", to.first, to.second);
     pen = to;
@@ -156,7 +157,7 @@ std::string path_of(const std::vector<Bone>& bones, bool inferred, const Camera&
   return out;
 }
 
-/// The path of the dots: lines without length, of which the round ends are drawn.
+/// Returns the path of the dots: lines of length 0 with round ends.
 std::string path_of(const std::vector<Dot>& dots, bool inferred, const Camera& camera) {
   std::string out;
   for (const Dot& dot : dots) {
@@ -176,7 +177,7 @@ std::string skeleton_svg(const std::vector<PageBody>& bodies) {
     if (!one.bones.empty() || !one.dots.empty()) all.push_back(std::move(one));
   }
   if (all.empty()) return "";
-  // One camera for all bodies of the take.
+  // All bodies of the take have the same view.
   const Camera camera(all);
   std::string out = fmt::format("<svg viewBox=\"0 0 {} {}\">", width, height);
   const auto add = [&out](std::string_view colour, std::string_view kind, const std::string& path) {

@@ -11,7 +11,7 @@
 namespace kinalign {
 
 std::string table_html(const Table& table) {
-  // Numbers are right-aligned by the style; columns of words have a class.
+  // The style right-aligns cells; columns of words have a class that left-aligns them.
   const std::vector<bool> right = numeric_columns(table);
   const auto cell = [&](std::string_view tag, std::size_t column, const std::string& text) {
     return fmt::format("<{0}{1}>{2}</{0}>", tag, right[column] ? "" : " class=\"text\"",
@@ -23,7 +23,7 @@ std::string table_html(const Table& table) {
   }
   out += "</tr></thead><tbody>";
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
-    // The style sets a row of sums apart.
+    // The style separates the row of sums from the others.
     out += table.has_sum && r + 1 == table.rows.size() ? "<tr class=\"sum\">" : "<tr>";
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
       out += cell("td", c, cell_text(table.rows[r][c], table.columns[c]));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A table on a page.
+// A table as HTML.
 #pragma once
 
 #include "kinalign/view/table.h"
@@ -8,8 +8,8 @@
 
 namespace kinalign {
 
-/// A <figure> with the table and its caption. A wide table scrolls sideways.
-/// Pages of benchmarks use it, too.
+/// Returns a <figure> with the table and its caption. A wide table scrolls sideways. The page of a
+/// benchmark uses this function too.
 std::string table_html(const Table& table);
 
 }  // namespace kinalign

@@ -14,12 +14,12 @@ namespace kinalign {
 
 namespace {
 
-// The picture scales with the page, so these are proportions.
+// The picture is scaled with the page, so these lengths are proportions.
 constexpr float plot_left = 46, plot_top = 10, plot_wide = 820, plot_high = 250;  // units
 constexpr std::size_t curve_colours = 12;  // .c0 to .c11 of assets/models.css
 
-/// The step, 1, 2 or 5 times a power of ten, that divides a length into 4 to 10 parts.
-/// Steps of 5, 2 and 1 are tried in this order, so the coarsest that gives four parts is taken.
+/// Returns a step of 1, 2 or 5 times a power of ten that divides a length into 4 to 10 parts. Steps
+/// are tried from the coarsest to the finest; the first that gives four parts is used.
 float step_for(float length) {
   const float power = std::pow(10.0F, std::floor(std::log10(length / 4.0F)));
   for (const float times : {5.0F, 2.0F}) {
@@ -28,7 +28,7 @@ float step_for(float length) {
   return power;
 }
 
-/// The numbers written at an axis from 0 to `length`.
+/// Returns the numbers on an axis from 0 to `length`.
 std::vector<float> marks_up_to(float length) {
   const float step = step_for(length);
   std::vector<float> out;
@@ -38,8 +38,8 @@ std::vector<float> marks_up_to(float length) {
   return out;
 }
 
-/// The positions of seconds and centimetres in the picture.
-/// Both axes begin at 0, so that errors can be compared by eye.
+/// Converts seconds and centimetres to positions in the picture. Both axes begin at 0, so that
+/// errors can be compared visually.
 struct Axes {
   float seconds = 1.0F, cm = 1.0F;  // values at the right and at the upper end
 
@@ -47,7 +47,7 @@ struct Axes {
   float y(float value) const { return plot_top + plot_high * (1.0F - value / cm); }
 };
 
-/// Axes that hold all curves, up to a whole step.
+/// Returns axes that contain all curves, rounded up to a whole step.
 Axes axes_of(const ErrorPlot& plot) {
   Axes out{plot.step_s, 1.0F};
   for (const ErrorCurve& curve : plot.curves) {
@@ -55,12 +55,12 @@ Axes axes_of(const ErrorPlot& plot) {
     for (const float value : curve.cm) out.cm = std::max(out.cm, value);
   }
   const float step = step_for(out.cm);
-  // Rounded up, so that the highest curve stays below the uppermost grid line.
+  // The axis is rounded up, so that the highest curve is below the top grid line.
   out.cm = step * std::ceil(out.cm / step);
   return out;
 }
 
-/// Grid lines, numbers and titles of both axes.
+/// Returns the grid lines, numbers and titles of both axes.
 std::string grid_of(const Axes& axes) {
   std::string out;
   for (const float value : marks_up_to(axes.cm)) {
@@ -80,11 +80,11 @@ std::string grid_of(const Axes& axes) {
                    plot_left + plot_wide / 2, plot_top + plot_high + 36, plot_top + plot_high / 2);
 }
 
-/// The path of one curve through all its values.
+/// Returns the path of one curve through all its values.
 std::string line_of(const ErrorCurve& curve, const ErrorPlot& plot, const Axes& axes) {
   std::string out;
   for (std::size_t k = 0; k < curve.cm.size(); ++k) {
-    // A value stands for a step, so its point is in the middle of it.
+    // A value covers a whole step, so its point is in the middle of the step.
     const float s = plot.step_s * (static_cast<float>(k) + 0.5F);
     out += fmt::format("{}{:.1f} {:.1f}", k == 0 ? "M" : "L", axes.x(s), axes.y(curve.cm[k]));
   }
@@ -102,7 +102,7 @@ std::string error_plot_html(const ErrorPlot& plot) {
       plot_left + plot_wide + 14, plot_top + plot_high + 42, grid_of(axes));
   std::string legend = "<p class=\"legend\">";
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
-    // With more methods than colours, colours repeat.
+    // If there are more methods than colours, colours are used again.
     const std::size_t colour = i % curve_colours;
     svg +=
         fmt::format("<path class=\"c{}\" d=\"{}\"/>", colour, line_of(plot.curves[i], plot, axes));

@@ -8,7 +8,8 @@
 
 namespace kinalign {
 
-/// A <figure> with one line for each method, in its own colour. Empty without curves.
+/// Returns a <figure> with one line for each method, each in a different colour. Empty if there are
+/// no curves.
 std::string error_plot_html(const ErrorPlot& plot);
 
 }  // namespace kinalign

@@ -16,12 +16,12 @@ namespace kinalign {
 
 namespace {
 
-/// The facts in one line.
+/// Returns the facts in one line.
 std::string facts_html(const ModelsPage& page) {
   return escaped(fmt::format("{}", fmt::join(page.facts, " · ")));
 }
 
-/// The few numbers of the first screen.
+/// Returns the numbers of the first screen.
 std::string numbers_html(const ModelsPage& page) {
   std::string out;
   for (const auto& [number, what] : page.numbers) {
@@ -30,8 +30,8 @@ std::string numbers_html(const ModelsPage& page) {
   return out;
 }
 
-/// A section with its pictures, tables, and a note about anything missing.
-/// Missing parts are stated first, so that nobody looks for it.
+/// Returns a section with its pictures and tables. If a part is missing, a note at the beginning
+/// states this.
 std::string section_html(const PosePictures& pictures) {
   std::string out = fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n", escaped(pictures.id),
                                 escaped(pictures.title));
@@ -47,7 +47,7 @@ std::string section_html(const PosePictures& pictures) {
   return out + "</section>\n";
 }
 
-/// The part of a title before its colon is the link's text.
+/// Returns links to the sections. The link's text is the part of a title before the colon.
 std::string links_html(const ModelsPage& page) {
   std::string out;
   for (const PosePictures& figure : page.figures) {
@@ -59,17 +59,17 @@ std::string links_html(const ModelsPage& page) {
 
 }  // namespace
 
-/// Fills the page's template. Without moving bodies the page has no script.
+/// Fills the template of the page. Without moving bodies the page has no script.
 std::string models_html(const ModelsPage& page) {
   const std::string style = std::string(page_style()) + std::string(models_style());
   PageParts parts;
-  // A page without a script also has no data for it.
+  // A page without a script does not need its data.
   if (!models_script().empty() && !page.motion.bodies.empty()) {
     parts["motion"] = side_by_side_json(page.motion);
     parts["script"] = models_script();
     parts["motion_caption"] = escaped(page.motion.caption);
   }
-  // Made after the script is known, because the policy has its hash.
+  // The policy contains the hash of the script, so it is made after the script.
   parts["policy"] = page_policy(parts["script"], style);
   parts["software"] = escaped(page.software);
   parts["mark"] = models_page_mark;

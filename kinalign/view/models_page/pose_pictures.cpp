@@ -15,28 +15,29 @@ namespace kinalign {
 
 namespace {
 
-// A unit is a centimetre of the body; whole units keep the page small.
+// A unit is a centimetre of the body. Positions are whole units, which keeps the page small.
 constexpr float units_per_m = 100.0F;
 constexpr int picture_margin = 8;  // units
 constexpr double from_left_deg = 25.0, from_above_deg = 8.0;
-constexpr float farthest_m = 10.0F;  // from the picture's origin; farther joints are not drawn
+constexpr float farthest_m = 10.0F;  // from the picture's origin; joints farther away are not drawn
 
 constexpr std::array<std::string_view, 5> colour_names{"mocap", "kinect", "imu", "method", "both"};
 
-/// A place in a picture, in its units to the right and upwards from the origin.
+/// A position in a picture: units to the right of the origin and above it.
 struct Spot {
   int right = 0, up = 0;
 };
 
-/// Projects a place in parallel onto the picture.
+/// Projects a position onto the picture by parallel projection.
 Spot seen_from_camera(const float* place) {
   constexpr double degree = std::numbers::pi / 180.0;
-  // Computed once, at the first call.
+  // Computed once, in the first call.
   static const auto side = static_cast<float>(std::sin(from_left_deg * degree)),
                     front = static_cast<float>(std::cos(from_left_deg * degree)),
                     above = static_cast<float>(std::sin(from_above_deg * degree)),
                     level = static_cast<float>(std::cos(from_above_deg * degree));
-  // Turned about the vertical, then tilted; there is no perspective, so lengths can be compared.
+  // The position is rotated about the vertical and then tilted. There is no perspective, so lengths
+  // can be compared.
   const float right = front * place[0] - side * place[2];
   const float near = side * place[0] + front * place[2];
   const float up = level * place[1] - above * near;
@@ -44,19 +45,20 @@ Spot seen_from_camera(const float* place) {
           static_cast<int>(std::lround(units_per_m * up))};
 }
 
-/// A joint far off would shrink all pictures of the table.
+/// Returns whether a position is near enough. A distant joint would shrink all pictures of the
+/// table.
 bool is_near(const float* place) {
   return std::all_of(place, place + 3, [](float v) { return std::abs(v) < farthest_m; });
 }
 
-/// A bone as it is drawn.
+/// A bone in the picture.
 struct Line {
   Spot from, to;
   bool inferred = false;
 };
 
-/// The bones of a figure. A bone with a missing or far end is left out.
-/// It is called twice for each figure: for the common area, and to draw it.
+/// Returns the bones of a figure. A bone with a missing or distant end is omitted. Called twice for
+/// each figure: for the common area, and for drawing.
 std::vector<Line> lines_of(const StickFigure& figure) {
   const auto state = [&](std::size_t joint) {
     return figure.states.empty() ? Tracking::tracked : static_cast<Tracking>(figure.states[joint]);
@@ -73,8 +75,8 @@ std::vector<Line> lines_of(const StickFigure& figure) {
   return out;
 }
 
-/// The area that all pictures of a table must show, in units.
-/// The origin is always within it, so a picture without bones has a size, too.
+/// The area that all pictures of a table must show, in units. It always contains the origin, so a
+/// picture without bones has a size too.
 struct Bounds {
   int left = 0, right = 0, bottom = 0, top = 0;
 
@@ -86,7 +88,7 @@ struct Bounds {
   }
 };
 
-/// One area for all pictures, so that they have one scale.
+/// Returns the common area of all pictures, which gives them the same scale.
 Bounds bounds_of(const PosePictures& pictures) {
   Bounds out;
   for (const auto& [name, row] : pictures.rows) {
@@ -102,7 +104,7 @@ Bounds bounds_of(const PosePictures& pictures) {
   return out;
 }
 
-// SVG's y grows downwards, places grow upwards.
+// In SVG, y points down; in positions, `up` points up.
 std::string path_of(const std::vector<Line>& lines, bool inferred, const Bounds& bounds) {
   std::string out;
   for (const Line& line : lines) {
@@ -113,7 +115,7 @@ std::string path_of(const std::vector<Line>& lines, bool inferred, const Bounds&
   return out;
 }
 
-/// The figures of a picture, each with one path for tracked and one for inferred bones.
+/// Returns the figures of a picture. Each has one path for tracked and one for inferred bones.
 std::string svg_of(const PosePicture& picture, const Bounds& bounds, const std::string& label) {
   std::string out =
       fmt::format("<svg viewBox=\"{} {} {} {}\" role=\"img\" aria-label=\"{}\">", -picture_margin,
@@ -146,7 +148,7 @@ std::string pictures_html(const PosePictures& pictures) {
     out += fmt::format("<tr><th>{}</th>", escaped(name));
     for (std::size_t c = 0; c < row.size(); ++c) {
       const PosePicture& picture = row[c];
-      // For readers of a screen: what a picture shows cannot be heard.
+      // The label describes the picture for screen readers.
       const std::string label =
           fmt::format("{}, {}: {}", name, pictures.columns[c].first, picture.below);
       out += fmt::format("<td>{}<small>{}</small></td>",

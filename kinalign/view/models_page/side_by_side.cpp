@@ -15,14 +15,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Steps of rounding: finer than any difference that can be seen.
+// Rounding steps. Smaller differences are not visible.
 constexpr double moving_step_m = 1e-3, moving_step_cm = 0.01;
-// In the order of FigureColour; the script looks up its colours by them.
+// In the order of FigureColour. The script finds its colours by these words.
 constexpr std::array<const char*, 5> colour_words{"truth", "kinect", "imu", "method", "both"};
 
 }  // namespace
 
-// Packed like a take's series, so the same script unpacks them.
+// The series are packed like those of a take, so the same script unpacks them.
 std::string side_by_side_json(const SideBySide& motion) {
   Json bodies = Json::array();
   for (const MovingBody& body : motion.bodies) {
@@ -31,7 +31,7 @@ std::string side_by_side_json(const SideBySide& motion) {
              {"colour", colour_words[static_cast<std::size_t>(body.colour)]},
              {"parents", body.parents},
              {"positions", series_json(body.positions, 3 * joints, moving_step_m)}};
-    // Absent arrays mean: all tracked, and no error to show.
+    // Absent arrays mean that all joints are tracked and that no error is displayed.
     if (!body.states.empty()) one["states"] = series_json(body.states, joints);
     if (!body.cm.empty()) one["cm"] = series_json(body.cm, 1, moving_step_cm);
     bodies.push_back(std::move(one));

@@ -8,8 +8,8 @@
 
 namespace kinalign {
 
-/// One JSON object that may stand inside a <script> of HTML: it contains no '<'. Places are rounded
-/// to 1 mm, distances to 0.1 mm.
+/// Returns one JSON object without '<', which may be inside a <script> of HTML. Positions are
+/// rounded to 1 mm, distances to 0.1 mm.
 std::string side_by_side_json(const SideBySide& motion);
 
 }  // namespace kinalign

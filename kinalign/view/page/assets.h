@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fixed parts of a page; the build embeds them in the library (cmake/embed_page.cmake).
+// The constant parts of a page. The build embeds them in the library (cmake/embed_page.cmake).
 #pragma once
 
 #include <string_view>
 
 namespace kinalign {
 
-// All are constant texts in the program.
-std::string_view page_script();    // assets/main.js with all that it imports
+// All functions return constant texts in the program.
+std::string_view page_script();    // assets/main.js with all files that it imports
 std::string_view page_style();     // assets/page.css
 std::string_view page_template();  // assets/page.html
-std::string_view page_licences();  // for the libraries in the script
+std::string_view page_licences();  // licences of the libraries in the script
 
-/// The Debian packages that were missing when kinalign was built, so that there is no script:
-/// "esbuild, node-d3". Empty: none.
+/// The Debian packages that were missing when kinalign was built, such as "esbuild, node-d3". If
+/// any is missing, there is no script. Empty: none is missing.
 std::string_view page_parts_missing();
 
 }  // namespace kinalign

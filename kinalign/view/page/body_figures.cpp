@@ -10,11 +10,11 @@ namespace kinalign {
 
 namespace {
 
-/// Shorter end sites are fingertips, too small to see.
+/// Shorter end sites are fingertips, which are too small to be visible.
 constexpr double shortest_end_m = 0.04;
 
-/// The parents of a Kinect's joints; -1 for all other points.
-/// Only a Kinect's joints have known bones. A joint whose parent is not in the stream has none.
+/// Returns the parents of a Kinect's joints. The parent is -1 for all other points, because their
+/// bones are not known, and for a joint whose parent is not in the stream.
 std::vector<int> point_parents(const std::vector<std::string>& names) {
   std::vector<int> parents(names.size(), -1);
   for (std::size_t j = 0; j < names.size(); ++j) {
@@ -49,17 +49,17 @@ std::optional<JointRows> JointRows::of(const std::variant<ClipRows, PointRows, I
 
 Tracking JointRows::state(std::size_t row, std::size_t joint) const {
   const std::size_t cell = row * joints_ + joint;
-  // A skeleton has one flag for a whole row, points one for each joint.
+  // A skeleton has one flag for a whole row; points have one flag for each joint.
   if (states_ == nullptr) {
     return valid_->empty() || (*valid_)[row] != 0 ? Tracking::tracked : Tracking::missing;
   }
   if (!valid_->empty() && (*valid_)[cell] == 0) return Tracking::missing;
-  // A valid row between a missing and a tracked sample has the worse state of both, but it is not
+  // A valid row between a missing and a tracked sample has the worse state of both. It is still not
   // missing.
   return std::max((*states_)[cell], Tracking::inferred);
 }
 
-// Allocates a pose each time; it is called for kept rows and for nodes only.
+// Allocates memory for a pose in each call. It is called only for stored rows and for nodes.
 void pose_of_row(const Skeleton& skeleton, const ClipRows& rows, std::size_t row,
                  GlobalPose& pose) {
   const std::size_t joints = skeleton.joints();
@@ -71,7 +71,7 @@ void pose_of_row(const Skeleton& skeleton, const ClipRows& rows, std::size_t row
   forward_kinematics(skeleton, local, pose);
 }
 
-/// The colour of points: a Kinect's if they have a Kinect's bones, else that of a mocap.
+/// If the points have the bones of a Kinect, they get the Kinect's colour, otherwise that of mocap.
 BodyFigures::BodyFigures(const TakeGroup& group, std::size_t body) : number_(body) {
   body_.name = group.name;
   body_.in_take_space = group.space == "take";
@@ -94,7 +94,7 @@ BodyFigures::BodyFigures(const TakeGroup& group, std::size_t body) : number_(bod
     body_.parents = point_parents(body_.joint_names);
     const bool bones = std::any_of(body_.parents.begin(), body_.parents.end(),
                                    [](int parent) { return parent >= 0; });
-    // colour() of take_figures.cpp makes points red later if other streams were moved onto them.
+    // If other streams were moved onto these points, take_figures.cpp makes them red later.
     body_.colour = bones ? PageColour::kinect : PageColour::mocap;
     joints_ = body_.joint_names.size();
     bones_.resize(joints_);
@@ -114,7 +114,7 @@ void BodyFigures::add(const std::variant<ClipRows, PointRows, ImuRows>& rows, st
   if (keep) keep_row(*joints, rows, row);
 }
 
-/// Updates the lengths of the bones whose ends are both tracked (Welford's method).
+/// Updates the lengths of the bones whose two ends are tracked (Welford's method).
 void BodyFigures::add_bones(const JointRows& rows, std::size_t row) {
   for (std::size_t j = 0; j < bones_.size(); ++j) {
     const int parent = body_.parents[j];
@@ -134,9 +134,8 @@ void BodyFigures::add_bones(const JointRows& rows, std::size_t row) {
   }
 }
 
-/// Stores a row for the page. End sites are computed from the pose, and missing unless all joints
-/// are tracked.
-/// Positions of end sites are appended to each row after those of the joints.
+/// Stores a row for the page. The positions of end sites follow those of the joints. They are
+/// computed from the pose and are missing unless all joints are tracked.
 void BodyFigures::keep_row(const JointRows& joints,
                            const std::variant<ClipRows, PointRows, ImuRows>& rows,
                            std::size_t row) {
@@ -150,7 +149,7 @@ void BodyFigures::keep_row(const JointRows& joints,
   if (ends_.empty()) return;
   const auto& clip = std::get<ClipRows>(rows);
   pose_of_row(*skeleton_, clip, row, pose_);
-  // An end site follows from the rotations, so it is there if the whole row is.
+  // An end site is computed from the rotations, so it is visible if the whole row is valid.
   const auto state = all_tracked ? Tracking::tracked : Tracking::missing;
   for (const EndSite& end : ends_) {
     const auto j = static_cast<std::size_t>(end.parent);
@@ -163,7 +162,7 @@ std::vector<BoneLength> BodyFigures::bones() const {
   std::vector<BoneLength> out;
   for (std::size_t j = 0; j < bones_.size(); ++j) {
     const Sums& sums = bones_[j];
-    // A deviation needs two values.
+    // A standard deviation needs two values.
     if (sums.rows < 2) continue;
     out.push_back({number_, j, sums.rows, sums.mean,
                    std::sqrt(sums.squares / static_cast<double>(sums.rows - 1)), sums.shortest,

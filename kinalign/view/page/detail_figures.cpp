@@ -7,11 +7,11 @@ namespace kinalign {
 
 namespace {
 
-/// The place of the other body's root at a time, interpolated between the stored rows.
+/// Returns the position of the other body's root at a time, interpolated between the stored rows.
 Vec3 onto_root_at(const RawMove& move, double at) {
   const std::vector<float>& times = *move.onto_seconds;
   const auto behind = std::lower_bound(times.begin(), times.end(), static_cast<float>(at));
-  // Beyond the stored rows the first or the last place is used.
+  // Before the first and after the last stored row, the nearest position is used.
   if (behind == times.begin()) return move.onto_root.front();
   if (behind == times.end()) return move.onto_root.back();
   const auto b = static_cast<std::size_t>(behind - times.begin());
@@ -20,10 +20,9 @@ Vec3 onto_root_at(const RawMove& move, double at) {
   return (1.0 - share) * move.onto_root[b - 1] + share * move.onto_root[b];
 }
 
-/// The transform of one raw sample. By the paper's method each sample has its own, and none if the
-/// root was not seen.
-/// The translation is found as alignment finds it: the root of the sample is put onto the other
-/// body's root at that time.
+/// Returns the transform of one raw sample. With the method "paper" each sample has its own
+/// transform; absent if the root was not seen. As in alignment, the translation puts the sample's
+/// root onto the other body's root at that time.
 std::optional<RigidTransform> transform_of(const RawPoints& raw, const RawMove& move, std::size_t t,
                                            std::size_t joints, double at) {
   if (move.space == nullptr) return RigidTransform{};
@@ -45,13 +44,13 @@ DetailFigures::DetailFigures(PageDetail detail, std::vector<std::size_t> onto_jo
       half_step_s_(0.5 * row_step_s),
       all_rows_(all_rows) {}
 
-// Called for every row of the take; only those within the detail are kept.
+// Called for every row of the take. Only rows within the detail are stored.
 void DetailFigures::add(double seconds, std::int64_t nearest_raw_ns, const JointRows& points,
                         const std::optional<JointRows>& onto, std::size_t row) {
   if (seconds < detail_.begin_s || seconds > detail_.end_s) return;
   const auto at = static_cast<float>(seconds);
   const double nearest = 1e-9 * static_cast<double>(nearest_raw_ns);
-  // Within half a row of a raw sample, no row is nearer to it.
+  // A raw sample less than half a row away has no nearer row.
   if (nearest <= half_step_s_) {
     detail_.near_seconds.push_back(at);
     detail_.near_s = std::max(detail_.near_s, static_cast<float>(nearest));
@@ -68,7 +67,7 @@ void DetailFigures::add(double seconds, std::int64_t nearest_raw_ns, const Joint
 }
 
 void add_raw(const RawPoints& raw, const RawMove& move, Time first, PageDetail& detail) {
-  // True even if no sample lies within the part: the inputs were read.
+  // Set even if no sample is within the part, because the input files were read.
   detail.has_raw = true;
   const PointFrames& frames = raw.frames;
   const std::size_t joints = frames.size() == 0 ? 0 : frames.state.size() / frames.size();
@@ -80,7 +79,7 @@ void add_raw(const RawPoints& raw, const RawMove& move, Time first, PageDetail& 
     const auto transform = transform_of(raw, move, t, joints, at);
     detail.raw_seconds.push_back(static_cast<float>(at));
     for (std::size_t cell = t * joints; cell < (t + 1) * joints; ++cell) {
-      // A sample without transform has no place in the take's space, so its joints count as
+      // A sample without a transform has no position in the take's space, so its joints count as
       // missing.
       const bool seen = transform && frames.state[cell] != Tracking::missing;
       const Vec3 place = vec3(frames.positions, cell);
@@ -96,7 +95,7 @@ DetailStretch raw_node_stretch(const std::vector<RawNode>& raw, const DetailStre
   std::size_t samples = 0;
   for (const RawNode& node : raw) samples += node.stamps.size();
   if (samples <= most) return stretch;
-  // The part is shortened to the share of samples that fits, around its middle.
+  // The part is shortened around its middle, so that only the allowed number of samples is left.
   const double kept = static_cast<double>(most) / static_cast<double>(samples);
   const double middle = 0.5 * (stretch.begin_s + stretch.end_s);
   const double half = 0.5 * kept * (stretch.end_s - stretch.begin_s);

@@ -7,8 +7,8 @@
 
 namespace kinalign {
 
-/// A lane for the group, or one for each node.
-/// Points are green here; TakeFigures corrects the colour when all bodies are known.
+/// Makes one lane for the group, or one for each node. Points are green here. TakeFigures corrects
+/// the colour when all bodies are known.
 LaneFigures::LaneFigures(const TakeGroup& group, std::size_t bins) {
   PageLane lane;
   lane.stream = group.name;
@@ -37,7 +37,7 @@ void LaneFigures::add(const std::variant<ClipRows, PointRows, ImuRows>& rows, st
                       std::size_t bin) {
   if (const auto joints = JointRows::of(rows, joints_)) {
     Counts& counts = counts_[0][bin];
-    // A row in which nothing was measured adds no distance.
+    // A row in which nothing was measured is not counted for distances.
     bool any = false;
     for (std::size_t j = 0; j < joints_; ++j) {
       const Tracking state = joints->state(row, j);
@@ -65,7 +65,7 @@ void LaneFigures::add(const std::variant<ClipRows, PointRows, ImuRows>& rows, st
 
 void LaneFigures::add_distance(const SampleDistance& distance, std::size_t sample, std::size_t lane,
                                std::size_t bin) {
-  // The largest value of a bin is shown: a mean would hide single bad rows.
+  // Each bin shows its largest value, because a mean would hide single bad rows.
   const auto enlarge = [sample, bin](std::vector<float>& to, const std::vector<std::int64_t>& ns) {
     if (sample >= ns.size()) return;
     to[bin] = std::max(to[bin], static_cast<float>(1e-9 * static_cast<double>(ns[sample])));
@@ -74,7 +74,7 @@ void LaneFigures::add_distance(const SampleDistance& distance, std::size_t sampl
   enlarge(lanes_[lane].interval_s, distance.time_interval_ns);
 }
 
-// Counts become shares only now, when all rows are in.
+// Counts are converted to shares after the last row.
 std::vector<PageLane> LaneFigures::finish() {
   const auto share = [](std::uint64_t part, std::uint64_t all) {
     return all == 0 ? 0.0f

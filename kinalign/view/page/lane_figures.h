@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams over time, in equal bins of a take: the share that was measured, the distance from raw
-// samples, and the certainty of stamps.
+// Streams over time, in equal bins of a take: the share of measured samples, the time to raw
+// samples, and the time interval of stamps. One line of the figure is a lane.
 #pragma once
 
 #include "kinalign/take/take.h"
@@ -11,9 +11,8 @@
 
 namespace kinalign {
 
-/// The lanes of one group: one, or one for each node.
-/// Skeletons and points have one lane, with the share of their joints; nodes have one lane each,
-/// since each may fail by itself.
+/// The lanes of one group. A skeleton or points have one lane, with the share of their joints.
+/// Nodes have one lane each, since each node may fail independently.
 class LaneFigures {
  public:
   LaneFigures(const TakeGroup& group, std::size_t bins);
@@ -29,7 +28,7 @@ class LaneFigures {
   void add_distance(const SampleDistance& distance, std::size_t sample, std::size_t lane,
                     std::size_t bin);
 
-  std::size_t joints_ = 0;  // a body's joints
+  std::size_t joints_ = 0;  // joints of a body
   std::vector<PageLane> lanes_;
   std::vector<std::vector<Counts>> counts_;  // [lanes][bins]
 };

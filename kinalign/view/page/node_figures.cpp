@@ -17,19 +17,20 @@ namespace kinalign {
 namespace {
 
 constexpr double standard_gravity = 9.80665;  // m/s2
-constexpr double half_window_s = 0.05;        // passes 8 Hz and less: half of a 15 Hz node's range
+constexpr double half_window_s = 0.05;        // passes up to 8 Hz, half of the rate of a 15 Hz node
 constexpr double most_lag_s = 0.25;
-// With fewer rows the fitted rotations would explain almost any difference.
-constexpr std::size_t fewest_rows = 20;  // needed for a comparison
+// With fewer rows, the fitted rotations could explain almost any difference.
+constexpr std::size_t fewest_rows = 20;  // least number of rows for a comparison
 
 // ---- by name
 
-/// Words in a node's name, and the usual names of its joints; "*" stands for the side.
+/// Words in a node's name, and the usual names of its joints. "*" means the side.
 struct Wear {
   std::vector<std::string_view> words, turns, place;
 };
 
-/// The order matters: of the entries with a word in the name, the first whose joints exist counts.
+/// The order matters. Of the entries with a word in the name, the first entry whose joints exist is
+/// used.
 const std::vector<Wear>& wears() {
   static const std::vector<Wear> all{
       {{"waist", "pelvis", "hips"}, {"Hips", "Pelvis", "hip"}, {"Hips", "Pelvis", "hip"}},
@@ -55,8 +56,8 @@ const std::vector<Wear>& wears() {
   return all;
 }
 
-/// The letters of a name in lower case: "Wrist_L" gives "wristl".
-/// Digits and separators do not matter for words.
+/// Returns the letters of a name in lower case: "Wrist_L" gives "wristl". Digits and separators are
+/// removed.
 std::string plain(const std::string& name) {
   std::string out;
   for (const char c : name) {
@@ -67,8 +68,9 @@ std::string plain(const std::string& name) {
   return out;
 }
 
-/// The side in a name: "Left" or "Right" for "wrist_left", "L_Foot", "shank_r"; else empty.
-/// A single letter counts only beside an underscore: "arm" has an "r", and "lab" an "l".
+/// Returns the side in a name: "Left" or "Right" for "wrist_left", "L_Foot", "shank_r"; otherwise
+/// empty. A single letter counts only next to an underscore, because "arm" contains an "r" and
+/// "lab" an "l".
 std::string_view side_of(const std::string& name) {
   const std::string text = plain(name);
   const auto has = [&](std::string_view word, std::string_view letters) {
@@ -82,7 +84,8 @@ std::string_view side_of(const std::string& name) {
   return has("right", "rR") ? "Right" : "";
 }
 
-/// The first joint that fits a pattern; patterns with a side need one in the node's name.
+/// Returns the first joint that matches a pattern. Patterns with a side need a side in the node's
+/// name.
 std::optional<std::size_t> joint_called(std::span<const std::string_view> patterns,
                                         std::string_view side,
                                         const std::vector<std::string>& joints) {
@@ -100,7 +103,7 @@ std::optional<std::size_t> joint_called(std::span<const std::string_view> patter
 
 // ---- fits
 
-/// The rotation R with the largest sum of to . R from, if `cross` is the sum of to * from^T
+/// Returns the rotation R that maximises the sum of to . R from. `cross` is the sum of to * from^T
 /// (Wahba's problem; Markley 1988).
 Quat best_rotation(const Eigen::Matrix3d& cross) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -113,8 +116,8 @@ Quat best_rotation(const Eigen::Matrix3d& cross) {
 
 using Matrix4 = Eigen::Matrix4d;
 
-/// The matrix M with p * q = M q, q as w,x,y,z.
-/// A product of quaternions is linear in each of them, so it has a matrix.
+/// Returns the matrix M with p * q = M q, q as w,x,y,z. A product of quaternions is linear in each
+/// factor, so such a matrix exists.
 Matrix4 left_of(const Quat& p) {
   Matrix4 m;
   m << p.w(), -p.x(), -p.y(), -p.z(), p.x(), p.w(), -p.z(), p.y(), p.y(), p.z(), p.w(), -p.x(),
@@ -122,7 +125,7 @@ Matrix4 left_of(const Quat& p) {
   return m;
 }
 
-/// The matrix M with q * p = M q, q as w,x,y,z.
+/// Returns the matrix M with q * p = M q, q as w,x,y,z.
 Matrix4 right_of(const Quat& p) {
   Matrix4 m;
   m << p.w(), -p.x(), -p.y(), -p.z(), p.x(), p.w(), p.z(), -p.y(), p.y(), -p.z(), p.w(), p.x(),
@@ -132,19 +135,20 @@ Matrix4 right_of(const Quat& p) {
 
 Quat quat_of(const Eigen::Vector4d& v) { return Quat(v[0], v[1], v[2], v[3]).normalized(); }
 
-/// The two rotations of one row.
+/// The orientations of node and bone in one row.
 struct OrientationPair {
   Quat node, bone;
 };
 
-/// Constant rotations of the world and of the sensor: node = world * bone * sensor.
+/// Constant rotations of world and sensor: node = world * bone * sensor.
 struct OrientationFit {
   Quat world = Quat::Identity(), sensor = Quat::Identity();
   Quat predicted(const Quat& bone) const { return world * bone * sensor; }
 };
 
-/// Minimises the sum of |world^-1 node - bone sensor|^2 over both unit quaternions, by the largest
-/// singular value of a 4 x 4 matrix. Three rounds determine the signs of the quaternions.
+/// Minimises the sum of |world^-1 node - bone sensor|^2 over both unit quaternions, using the
+/// largest singular value of a 4 x 4 matrix. Three repetitions determine the signs of the
+/// quaternions.
 OrientationFit fit_orientation(std::vector<OrientationPair> pairs) {
   OrientationFit fit;
   for (int round = 0; round < 3; ++round) {
@@ -153,7 +157,7 @@ OrientationFit fit_orientation(std::vector<OrientationPair> pairs) {
     const Eigen::JacobiSVD<Matrix4> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
     fit.world = quat_of(svd.matrixV().col(0)).conjugate();
     fit.sensor = quat_of(svd.matrixU().col(0));
-    // With this sign of the sensor, the sum of node . (world bone sensor) is positive.
+    // This sign of the sensor makes the sum of node . (world bone sensor) positive.
     bool flipped = false;
     for (OrientationPair& p : pairs) {
       if (p.node.dot(fit.predicted(p.bone)) >= 0.0) continue;
@@ -165,8 +169,8 @@ OrientationFit fit_orientation(std::vector<OrientationPair> pairs) {
   return fit;
 }
 
-/// The sums for Pearson's correlation.
-/// Magnitudes are compared with it, because no rotation changes them.
+/// The sums for Pearson's correlation. Magnitudes of vectors are compared, because rotations do not
+/// change them.
 struct Correlation {
   double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
   void add(double a, double b) { n += 1, x += a, y += b, xx += a * a, yy += b * b, xy += a * b; }
@@ -176,12 +180,13 @@ struct Correlation {
   }
 };
 
-/// The weights of values at `times` in the fit of a parabola: for its slope and its bend at time 0.
+/// The weights of values at `times` that give the slope and the second derivative of a fitted
+/// parabola at time 0.
 struct Weights {
   std::vector<double> slope, bend;
 };
-/// Least squares by the normal equations of 1, t and t^2.
-/// Times are relative to the middle row, so slope and bend at time 0 are those of that row.
+/// Computes the weights by least squares, from the normal equations of 1, t and t^2. Times are
+/// relative to the middle row, so time 0 is that row.
 Weights parabola(std::span<const double> times) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   for (const double t : times) {
@@ -198,10 +203,10 @@ Weights parabola(std::span<const double> times) {
   return out;
 }
 
-/// A signal of a node and that of its bone, over the rows in which both are known.
-/// Rows that are not known are zeros, so that all series have as many rows as the page.
+/// A signal of a node and that of its bone, over the rows in which both are known. Other rows are
+/// zero, so that all series have the same number of rows.
 struct SignalFit {
-  std::vector<float> node, bone;  // [K,3]; the bone's in the node's space
+  std::vector<float> node, bone;  // [K,3]; both in the node's axes
   double rms = 0.0, correlation = 0.0;
 };
 
@@ -235,15 +240,15 @@ std::vector<NodeReading> node_readings(const ImuGroup& group, const ImuRows& row
     if (group.content.angular_velocity) out[s].rate = vec3(rows.angular_velocity, at);
     if (group.content.acceleration) out[s].acceleration = vec3(rows.acceleration, at);
   }
-  // Values in the root's space are brought back: the other nodes' orientation is relative to the
-  // root's, and their acceleration lacks the root's.
+  // Values in the root's space are converted back. The other nodes' orientations are relative to
+  // the root's, and the root's acceleration was subtracted from theirs.
   if (group.root_node.empty() || !group.content.orientation) return out;
   const auto root = index_of(group.node_names, group.root_node);
   if (!root) return out;
   for (std::size_t s = 0; s < nodes; ++s) {
     NodeReading& node = out[s];
     if (s == *root || !node.valid || !out[*root].valid) continue;
-    const Quat to_node = node.orientation.conjugate();  // from the root's space
+    const Quat to_node = node.orientation.conjugate();  // rotates from the root's space
     node.rate = to_node * node.rate;
     node.acceleration = to_node * (node.acceleration + out[*root].acceleration);
     node.orientation = out[*root].orientation * node.orientation;
@@ -258,7 +263,7 @@ BoneReading bone_reading(std::span<const TimedPose* const> poses, std::size_t mi
   const Weights weights = parabola(times);
   BoneReading out;
   out.rotation = poses[middle]->pose.rotations[bone.turns];
-  // Differences from the middle keep the numbers small, so that the bend loses no digits.
+  // Differences from the middle are small numbers, so the second derivative stays precise.
   const Vec3 here = poses[middle]->pose.positions[bone.place];
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const GlobalPose& pose = poses[i]->pose;
@@ -270,7 +275,7 @@ BoneReading bone_reading(std::span<const TimedPose* const> poses, std::size_t mi
   return out;
 }
 
-/// If a node's name does not name its bone, all joints of the skeleton are candidates for it.
+/// If the name of a node does not give its bone, all joints of the skeleton are candidates.
 NodeCompare::NodeCompare(const ImuGroup& group, const Skeleton& skeleton, double rate_hz)
     : group_(group),
       skeleton_(skeleton),
@@ -294,7 +299,7 @@ void NodeCompare::add(double seconds, const ClipRows& clip, const ImuRows& nodes
   now.known = clip.valid.empty() || clip.valid[row] != 0;
   now.keep = keep;
   if (keep) now.nodes = node_readings(group_, nodes, row);
-  // One row is complete as soon as half_window_ rows follow it.
+  // A row can be computed when half_window_ rows follow.
   while (waiting_.size() > next_ + half_window_) settle_next();
   while (next_ > half_window_) {
     waiting_.pop_front();
@@ -302,14 +307,14 @@ void NodeCompare::add(double seconds, const ClipRows& clip, const ImuRows& nodes
   }
 }
 
-/// Computes the bones' readings of a row, once the rows after it have come. A gap within the window
-/// leaves them unknown.
+/// Computes the readings of a row's bones when the rows after it have come. If there is a gap
+/// within the window, the readings stay unknown.
 void NodeCompare::settle_next() {
   const std::size_t middle = next_++;
   Waiting& row = waiting_[middle];
   if (!row.keep) return;
   Kept& kept = kept_.emplace_back();
-  // A row whose bones stay empty is still kept, so that all series have the same rows.
+  // A row without readings is stored too, so that all series have the same rows.
   kept.nodes = std::move(row.nodes);
   const std::size_t first = middle - std::min(middle, half_window_);
   const std::size_t last = std::min(middle + half_window_, waiting_.size() - 1);
@@ -320,14 +325,15 @@ void NodeCompare::settle_next() {
     if (step > longest_step_s_) return;
     poses.push_back(&waiting_[i].pose);
   }
-  // Three points determine a parabola.
+  // A parabola needs three points.
   if (poses.size() < 3) return;
   for (const WornOn& bone : candidates_) {
     kept.bones.push_back(bone_reading(poses, middle - first, bone));
   }
 }
 
-/// The candidate for a node: the bone by its name, else the one that turns most like it.
+/// Returns the candidate for a node: the bone by name, or else the bone whose rotation is most
+/// similar.
 std::size_t NodeCompare::candidate_of(std::size_t node) const {
   if (named_[node]) return node;
   std::size_t best = 0;
@@ -341,8 +347,7 @@ std::size_t NodeCompare::candidate_of(std::size_t node) const {
   return best;
 }
 
-/// The correlation of the magnitudes of both angular velocities.
-/// All kept rows count, whatever the size of the motion.
+/// Returns the correlation of the magnitudes of both angular velocities, over all stored rows.
 double NodeCompare::alike(std::size_t node, std::size_t candidate) const {
   Correlation sums;
   for (const Kept& row : kept_) {
@@ -352,10 +357,11 @@ double NodeCompare::alike(std::size_t node, std::size_t candidate) const {
   return sums.value();
 }
 
-/// The joint of another node that turns clearly more like this node than its own bone; else empty.
-/// Bones that were chosen by their rotation can't contradict it, so only named ones are looked at.
+/// Returns the joint of another node whose rotation is clearly more similar to this node's than its
+/// own bone's; otherwise empty. Only bones that were found by name are checked; others were chosen
+/// by this similarity.
 std::string NodeCompare::more_like(std::size_t node) const {
-  // Limits on correlations: exchanged nodes are reported, similar bones are not.
+  // Limits for correlations. Exchanged nodes are reported; merely similar bones are not.
   constexpr double clearly = 0.1, sure = 0.8;
   if (!named_[node] || !group_.content.angular_velocity) return "";
   const double own = alike(node, node);
@@ -371,10 +377,10 @@ std::string NodeCompare::more_like(std::size_t node) const {
 
 namespace {
 
-/// Fits the rotation from the bone's vectors to the node's. `of_node(row)` and `of_bone(row)` give
-/// the vectors; rows that are not `known` get zeros.
-/// The rows are walked twice: for the rotation, then for the differences that remain. The bone's
-/// vectors are stored turned, so that a page draws both curves over each other.
+/// Fits the rotation from the bone's vectors to the node's. `of_node(row)` and `of_bone(row)`
+/// return the vectors; rows that are not `known` get zeros. The first pass over the rows computes
+/// the rotation, the second the remaining differences. The bone's vectors are stored after
+/// rotation, so that a page can draw both curves together.
 template <class Rows, class Known, class OfNode, class OfBone>
 SignalFit fit_signal(const Rows& rows, Known known, OfNode of_node, OfBone of_bone) {
   SignalFit out;
@@ -399,18 +405,19 @@ SignalFit fit_signal(const Rows& rows, Known known, OfNode of_node, OfBone of_bo
   return out;
 }
 
-/// The magnitude of vector k; `vectors` [K,3].
+/// Returns the magnitude of vector k of `vectors` [K,3].
 double length_at(const std::vector<float>& vectors, std::size_t k) {
   const std::size_t i = 3 * k;
   return std::hypot(static_cast<double>(vectors[i]), static_cast<double>(vectors[i + 1]),
                     static_cast<double>(vectors[i + 2]));
 }
 
-/// The time shift of `node` against `bone` at which their magnitudes agree best, by a parabola
-/// through the best shift and its neighbours. Absent if rows are too far apart.
+/// Returns the time shift of `node` relative to `bone` at which their magnitudes agree best. A
+/// parabola through the best shift and its neighbours refines the result. Absent if rows are too
+/// far apart.
 std::optional<double> lag_of(const SignalFit& signal, const std::vector<std::uint8_t>& known,
                              double step_s) {
-  // With fewer than three shifts to each side, or short takes, a peak would mean nothing.
+  // With fewer than three shifts on each side, or a short take, the best shift would be arbitrary.
   const auto most = static_cast<std::ptrdiff_t>(std::floor(most_lag_s / step_s));
   const auto rows = static_cast<std::ptrdiff_t>(known.size());
   if (most < 3 || rows < 4 * most) return std::nullopt;
@@ -426,7 +433,7 @@ std::optional<double> lag_of(const SignalFit& signal, const std::vector<std::uin
     alike.push_back(sums.value());
   }
   const auto best = std::max_element(alike.begin(), alike.end());
-  // A peak at the edge may lie beyond it, and a weak one may be chance.
+  // If the peak is at the edge, the true peak may be outside. A weak peak may be random.
   if (best == alike.begin() || best + 1 == alike.end() || *best < 0.5) return std::nullopt;
   const double left = *(best - 1), right = *(best + 1), bend = left - 2.0 * *best + right;
   const double shift = bend < 0.0 ? 0.5 * (left - right) / bend : 0.0;
@@ -435,7 +442,7 @@ std::optional<double> lag_of(const SignalFit& signal, const std::vector<std::uin
 
 }  // namespace
 
-/// Compares angular velocities; the lag comes from them, too.
+/// Compares angular velocities, and computes the lag from them.
 void NodeCompare::compare_rate(const Pair& pair, double kept_step_s, NodeFigures& out) const {
   SignalFit fit = fit_signal(
       kept_, [&pair](const Kept& row) { return is_known(row, pair); },
@@ -449,7 +456,8 @@ void NodeCompare::compare_rate(const Pair& pair, double kept_step_s, NodeFigures
   out.mocap_rate = std::move(fit.bone);
 }
 
-/// Compares accelerations. Gravity is added to the bone's if the node measures it.
+/// Compares accelerations. If the node measures gravity, gravity is added to the bone's
+/// acceleration.
 void NodeCompare::compare_acceleration(const Pair& pair, NodeFigures& out) const {
   const Vec3 up(0.0, group_.content.gravity ? standard_gravity : 0.0, 0.0);
   SignalFit fit = fit_signal(
@@ -466,8 +474,8 @@ void NodeCompare::compare_acceleration(const Pair& pair, NodeFigures& out) const
   out.mocap_acceleration = std::move(fit.bone);
 }
 
-/// Compares orientations after the best constant rotations of world and sensor.
-/// Mounting and heading are unknown, so both are fitted; drift and slip remain.
+/// Compares orientations after the best constant rotations of world and sensor. Mounting and
+/// heading are unknown, so both are fitted; the remaining error is drift and slip.
 void NodeCompare::compare_orientation(const Pair& pair, NodeFigures& out) const {
   std::vector<OrientationPair> pairs;
   for (const Kept& row : kept_) {
@@ -484,7 +492,8 @@ void NodeCompare::compare_orientation(const Pair& pair, NodeFigures& out) const 
     }
     squares += off * off;
     out.orientation_error.push_back(static_cast<float>(off));
-    // The node's axes in the take's space, for the player. Its own world has another heading.
+    // The axes of the node in the take's space, for the player. The node's own world has another
+    // heading.
     const Quat axes = fit.world.conjugate() * q;
     for (const double x : {axes.w(), axes.x(), axes.y(), axes.z()}) {
       out.axes.push_back(static_cast<float>(x));
@@ -494,8 +503,8 @@ void NodeCompare::compare_orientation(const Pair& pair, NodeFigures& out) const 
   out.orientation_rms = std::sqrt(squares / static_cast<double>(out.rows));
 }
 
-/// Compares a node with its bone. With too few rows there is no comparison.
-/// `valid` comes first: the lag of compare_rate() needs it.
+/// Compares a node with its bone. With too few rows there is no comparison. `valid` is set first,
+/// because the lag in compare_rate() needs it.
 NodeFigures NodeCompare::compare(std::size_t node, double kept_step_s) const {
   const Pair pair{node, candidate_of(node)};
   NodeFigures out;
@@ -508,7 +517,7 @@ NodeFigures NodeCompare::compare(std::size_t node, double kept_step_s) const {
     out.valid.push_back(is_known(row, pair) ? 1 : 0);
     out.rows += out.valid.back();
   }
-  // Names and the count of rows are stated all the same.
+  // Names and the number of rows are always stated.
   if (out.rows < fewest_rows) return out;
   if (group_.content.angular_velocity) compare_rate(pair, kept_step_s, out);
   if (group_.content.acceleration) compare_acceleration(pair, out);

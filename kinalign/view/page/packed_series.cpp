@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t block_rows = 256;
 constexpr unsigned most_zeros = 20, all_zero = 31;
 
-/// `open_` holds the `used_` bits of the byte that is not yet complete.
+/// `open_` contains the `used_` bits of the incomplete last byte.
 class BitWriter {
  public:
   void put(std::uint64_t value, unsigned bits) {
@@ -41,19 +41,18 @@ class BitWriter {
   unsigned used_ = 0;
 };
 
-/// Zigzag: 0, -1, 1, -2, 2 become 0, 1, 2, 3, 4, so small numbers of both signs stay small.
+/// Zigzag coding: 0, -1, 1, -2, 2 become 0, 1, 2, 3, 4, so small numbers of both signs stay small.
 std::uint32_t unsigned_of(std::int64_t x) {
   return static_cast<std::uint32_t>(x < 0 ? -2 * x - 1 : 2 * x);
 }
 
-/// The bits that a number takes with that k.
-/// The same rule as in put_block().
+/// Returns the number of bits that a number needs with k. put_block() uses the same rule.
 std::uint64_t cost(std::uint32_t u, unsigned k) {
   const std::uint32_t zeros = u >> k;
   return zeros < most_zeros ? zeros + 1 + k : most_zeros + 32;
 }
 
-/// A block as values, differences or second differences, mapped to unsigned numbers.
+/// A block as values, differences or second differences, converted to unsigned numbers.
 struct Coded {
   std::array<std::uint32_t, block_rows> numbers{};
   std::size_t count = 0;
@@ -61,15 +60,15 @@ struct Coded {
   std::uint64_t bits = 0;
 };
 
-/// Tries the few k near the mean's logarithm and keeps the one with the fewest bits.
-/// The best k of a Rice code is near the logarithm of the mean; a few around it are tried in full.
+/// Sets the best k. The best k of a Rice code is near the logarithm of the mean, so a few values
+/// near it are tried.
 void choose_k(Coded& block) {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < block.count; ++i) sum += block.numbers[i];
   if (sum == 0) return;
   const double mean = static_cast<double>(sum) / static_cast<double>(block.count);
   const auto near = static_cast<unsigned>(std::max(0.0, std::floor(std::log2(mean + 1.0))));
-  // A block of zeros has left already, with k = 31 and no bits.
+  // A block of zeros was handled before; it has k = 31 and no bits.
   block.bits = UINT64_MAX;
   for (unsigned k = near > 1 ? near - 2 : 0; k <= std::min(near + 1, 30u); ++k) {
     std::uint64_t bits = 0;
@@ -81,7 +80,7 @@ void choose_k(Coded& block) {
   }
 }
 
-/// The block coded in that order. `values` begins two values before the block.
+/// Codes a block with the given order of differences. `values` begins two values before the block.
 Coded coded(std::span<const std::int64_t> values, unsigned order) {
   Coded block;
   block.count = values.size() - 2;
@@ -93,11 +92,12 @@ Coded coded(std::span<const std::int64_t> values, unsigned order) {
   return block;
 }
 
-/// Writes a block in the order with the fewest bits.
+/// Writes a block with the order of differences that needs the fewest bits.
 void put_block(std::span<const std::int64_t> values, BitWriter& out) {
   unsigned best = 0;
   Coded block = coded(values, 0);
-  // Values suit constant columns, differences steady motion, second differences smooth motion.
+  // Values are best for constant columns, differences for steady motion, second differences for
+  // smooth motion.
   for (unsigned order = 1; order <= 2; ++order) {
     Coded other = coded(values, order);
     if (other.bits >= block.bits) continue;
@@ -119,14 +119,14 @@ void put_block(std::span<const std::int64_t> values, BitWriter& out) {
   }
 }
 
-/// Packs the numbers that `at(row, column)` gives.
-/// One stream of bits for all columns: only its end is padded to a byte.
+/// Packs the numbers that `at(row, column)` returns. All columns share one stream of bits, so only
+/// its end is padded to a byte.
 template <class At>
 std::string packed(std::size_t rows, std::size_t columns, At at) {
   BitWriter out;
-  // The zeros let the first rows be coded like all others.
-  std::vector<std::int64_t> values(rows + 2);  // with two zeros in front
-  // Column by column, because neighbours in time are alike and neighbours in a row are not.
+  // With these zeros the first rows are coded like all other rows.
+  std::vector<std::int64_t> values(rows + 2);  // with two leading zeros
+  // Columns are coded one after another, because values of neighbouring times are similar.
   for (std::size_t c = 0; c < columns; ++c) {
     for (std::size_t r = 0; r < rows; ++r) values[r + 2] = at(r, c);
     for (std::size_t first = 0; first < rows; first += block_rows) {
@@ -160,7 +160,7 @@ std::string base64(std::string_view bytes) {
 
 std::string packed_series(std::span<const float> values, std::size_t columns, double step) {
   if (columns == 0) return "";
-  constexpr double most = 268435456.0;  // 2^28: two differences fit into 31 bits
+  constexpr double most = 268435456.0;  // 2^28; second differences then fit into 31 bits
   return packed(values.size() / columns, columns, [&](std::size_t r, std::size_t c) {
     const double x = static_cast<double>(values[r * columns + c]) / step;
     return std::isfinite(x) ? static_cast<std::int64_t>(std::llround(std::clamp(x, -most, most)))

@@ -13,7 +13,8 @@ namespace kinalign {
 
 namespace {
 
-/// The template keeps a block if its part is not empty, whatever it contains.
+/// Returns a text that is empty if `on` is false. The template keeps a block if its part is not
+/// empty.
 std::string flag(bool on) { return on ? "yes" : ""; }
 
 template <class Has>
@@ -21,11 +22,12 @@ std::string any_node(const TakePage& page, Has has) {
   return flag(std::any_of(page.nodes.begin(), page.nodes.end(), has));
 }
 
-/// All texts of the page, by the names of their places in the template.
-/// Functions of page_text.h give HTML; plain texts are escaped here.
+/// Returns all texts of the page, by their names in the template. Functions of page_text.h return
+/// HTML; plain texts are escaped here.
 PageParts parts_of(const TakePage& page) {
   PageParts parts;
-  // The policy has the hashes of exactly these two texts, so the page loads and runs nothing else.
+  // The policy contains the hashes of these two texts, so the browser runs no other script and
+  // style.
   parts["policy"] = page_policy(page_script(), page_style());
   parts["software"] = escaped(page.software);
   parts["title"] = escaped(page.file) + ": " + std::string(to_string(quality_of(page)));
@@ -59,15 +61,15 @@ PageParts parts_of(const TakePage& page) {
   return parts;
 }
 
-/// Sets which blocks of the template the page has.
-/// A figure without data would be an empty frame, so its block is left out.
+/// Sets which blocks of the template are on the page. The block of a figure without data is
+/// omitted.
 void put_flags(const TakePage& page, PageParts& parts) {
   const auto lane = [&](auto has) {
     return flag(std::any_of(page.lanes.begin(), page.lanes.end(), has));
   };
   parts["resampled"] = lane([](const PageLane& l) { return l.resampled; });
   parts["interval"] = lane([](const PageLane& l) { return l.interval_known; });
-  // The caption of figure 3 says how many bins there are.
+  // The caption of figure 3 states the number of bins.
   parts["bins"] = page.lanes.empty() ? "0" : std::to_string(page.lanes.front().tracked.size());
   parts["points"] = flag(std::any_of(page.bodies.begin(), page.bodies.end(),
                                      [](const PageBody& b) { return b.kind == PageKind::points; }));
@@ -82,7 +84,8 @@ void put_flags(const TakePage& page, PageParts& parts) {
   parts["orientation"] = any_node(page, [](const NodeFigures& n) { return n.has_orientation; });
   parts["raw_nodes"] = raw_nodes_text(page);
   parts["axes"] = flag(has_axes(page));
-  // One caption for all nodes: they are of one stream, which has gravity or not.
+  // The caption applies to all nodes, because all nodes of a stream either measure gravity or do
+  // not.
   const std::string gravity = any_node(page, [](const NodeFigures& n) { return n.has_gravity; });
   parts["gravity"] = gravity.empty() ? ", gravity removed" : ", gravity included";
   parts["rest"] = gravity.empty() ? "0" : "9.8 m/s²";
@@ -90,7 +93,7 @@ void put_flags(const TakePage& page, PageParts& parts) {
 
 }  // namespace
 
-// Apostrophes too, because attributes may be quoted by them.
+// Apostrophes are escaped too, because they may quote attributes.
 std::string escaped(std::string_view text) {
   std::string out;
   while (!text.empty()) {
@@ -117,7 +120,7 @@ std::string escaped(std::string_view text) {
 }
 
 Result<std::string> page_html(const TakePage& page) {
-  // The libraries of the script are embedded at build time; without them the page could not draw.
+  // The build embeds the libraries of the script. Without them the page could not draw.
   if (!page_parts_missing().empty()) {
     return Failure(Error{"", 0, "a kinalign that was built with esbuild, libjs-three and node-d3",
                          "a kinalign without " + std::string(page_parts_missing())});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A take's page: one HTML text without external files. The same TakePage always gives the same
-// text.
+// Makes a take's page: one HTML text without external files. The same TakePage always gives the
+// same text.
 #pragma once
 
 #include "kinalign/view/page/take_page.h"
@@ -10,10 +10,9 @@
 
 namespace kinalign {
 
-/// The text escaped for HTML elements and quoted attributes. Bytes that are not UTF-8 become
-/// U+FFFD.
-/// Every text from a file or a user must go through it: names of takes and streams may contain
-/// markup.
+/// Escapes text for HTML elements and quoted attributes. Bytes that are not UTF-8 become U+FFFD.
+/// Every text from a file or a user must be escaped, because names of takes and streams may contain
+/// HTML.
 std::string escaped(std::string_view text);
 
 /// Fails if libraries of the script were missing when kinalign was built.

@@ -14,16 +14,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Rounding steps of series, below the resolution of any of the devices.
-// In s, m, rad/s and m/s2.
+// Rounding steps of series in s, m, rad/s and m/s2. They are below the resolution of all devices.
 constexpr double second_step = 1e-4, metre_step = 5e-4, rate_step = 0.01, acceleration_step = 0.02;
-// In rad, and parts of a quaternion.
+// Rounding steps in rad, and for components of a quaternion.
 constexpr double angle_step = 2e-5, rotation_step = 1.0 / 2048.0;
 
-/// The words that the script compares with.
+/// Returns the word by which the script recognises the kind.
 std::string_view name_of(PageKind kind) { return kind == PageKind::clip ? "clip" : "points"; }
 
-/// Fewer digits make a smaller page. A number that is not finite becomes 0, because JSON has none.
+/// Rounds a number, because fewer digits make a smaller page. JSON has only finite numbers; others
+/// become 0.
 double rounded(double x, double step) {
   const double y = std::round(x / step);
   return std::isfinite(y) ? y / std::round(1.0 / step) : 0.0;
@@ -33,15 +33,15 @@ Json vector_json(const Vec3& v) {
   return {rounded(v.x(), 1e-6), rounded(v.y(), 1e-6), rounded(v.z(), 1e-6)};
 }
 
-/// Bins are few, so they stand as plain numbers.
+/// There are few bins, so they are written as plain numbers.
 Json bins_json(const std::vector<float>& bins, double factor, double step) {
   Json out = Json::array();
   for (const float x : bins) out.push_back(rounded(factor * static_cast<double>(x), step));
   return out;
 }
 
-/// A body with its packed positions and states.
-/// Positions are rounded to half a millimetre.
+/// Converts a body with its packed positions and states. Positions are rounded to half a
+/// millimetre.
 Json body_json(const PageBody& body) {
   const std::size_t joints = body.joint_names.size();
   return {{"name", body.name},
@@ -54,7 +54,7 @@ Json body_json(const PageBody& body) {
           {"state", series_json(body.state, joints)}};
 }
 
-/// A space with its transform and residuals.
+/// Converts a space with its transform and residuals.
 Json space_json(const PageSpace& space) {
   const Quat& q = space.report.transform.rotation;
   // The residuals of the report, which figure 6 shows.
@@ -80,7 +80,7 @@ Json space_json(const PageSpace& space) {
           {"joints", std::move(joints)}};
 }
 
-/// The bounds of the zones go along, so that the script has no numbers of its own.
+/// Converts a floor. The limits of the zones are included, so that the script needs no constants.
 Json floor_json(const PageFloor& floor) {
   return {{"body", floor.body},
           {"camera", vector_json(floor.camera)},
@@ -100,8 +100,7 @@ Json bone_json(const BoneLength& bone) {
           {"longest_m", rounded(bone.longest_m, 1e-5)}};
 }
 
-/// A lane; distances and intervals only if the stream has them.
-/// In ms, the unit of figure 3.
+/// Converts a lane; distances and intervals only if the stream has them, in ms as in figure 3.
 Json lane_json(const PageLane& lane) {
   Json out{{"stream", lane.stream},
            {"part", lane.part},
@@ -115,8 +114,8 @@ Json lane_json(const PageLane& lane) {
   return out;
 }
 
-/// A node's signals; only those that it measures.
-/// Raw samples have times of their own, since they lie between rows.
+/// Converts the signals that a node measures. Raw samples have their own times, since they are
+/// between rows.
 Json node_json(const NodeFigures& node) {
   Json out{{"node", node.node},
            {"joint", node.joint},
@@ -137,7 +136,7 @@ Json node_json(const NodeFigures& node) {
       out["raw_acceleration"] = series_json(node.raw_acceleration, 3, acceleration_step);
     }
   }
-  // The error for figure 13, the axes for the player.
+  // The error is for figure 13, the axes are for the player.
   if (node.has_orientation) {
     out["orientation_error"] = series_json(node.orientation_error, 1, angle_step);
     out["axes"] = series_json(node.axes, 4, rotation_step);
@@ -145,7 +144,7 @@ Json node_json(const NodeFigures& node) {
   return out;
 }
 
-/// A detail; its own rows are absent if the page stores every row.
+/// Converts a detail. Its rows are absent if the page stores every row.
 Json detail_json(const TakePage& page, const PageDetail& detail) {
   const std::size_t joints = page.bodies[detail.body].joint_names.size();
   Json out{{"body", detail.body},
@@ -154,7 +153,7 @@ Json detail_json(const TakePage& page, const PageDetail& detail) {
            {"near_seconds", series_json(detail.near_seconds, 1, second_step)},
            {"has_raw", detail.has_raw}};
   if (!detail.seconds.empty()) {
-    // Each row has the places of all counterparts.
+    // Each row contains the positions of all counterparts.
     const std::size_t pairs = detail.onto_positions.size() / detail.seconds.size() / 3;
     out["seconds"] = series_json(detail.seconds, 1, second_step);
     out["positions"] = series_json(detail.positions, 3 * joints, metre_step);
@@ -169,7 +168,7 @@ Json detail_json(const TakePage& page, const PageDetail& detail) {
   return out;
 }
 
-/// A list of the page as a list of JSON objects.
+/// Converts a list of the page to a list of JSON objects.
 template <class Items, class ToJson>
 Json list_json(const Items& items, ToJson to_json) {
   Json out = Json::array();
@@ -212,7 +211,7 @@ std::string_view to_string(PageColour colour) {
   return colour == PageColour::kinect ? "kinect" : "imu";
 }
 
-// Marks of the recording are drawn on all figures over time.
+// All figures over time show the marks of the recording.
 std::string page_json(const TakePage& page) {
   Json marks = Json::array();
   for (const TakeMark& mark : page.report.marks) {

@@ -15,8 +15,8 @@ std::string_view part_called(const PageParts& parts, std::string_view name) {
   return found == parts.end() ? std::string_view() : std::string_view(found->second);
 }
 
-/// A hash in the form of a Content-Security-Policy.
-/// CSP wants the bytes of a SHA-256 in Base64 (W3C, Content Security Policy Level 3).
+/// Returns a hash as a Content-Security-Policy needs it: the bytes of a SHA-256 in Base64 (W3C,
+/// Content Security Policy Level 3).
 std::string policy_hash(std::string_view text) {
   Sha256 hash;
   hash.update(text);
@@ -44,7 +44,7 @@ std::string filled(std::string_view frame, const PageParts& parts) {
       out += part_called(parts, name);
       continue;
     }
-    // The matching end is found by its name, so blocks of other names may stand within.
+    // The end is found by its name, so a block may contain blocks with other names.
     const std::string end = fmt::format("{{{{/{}}}}}", name.substr(1));
     const std::size_t behind = frame.find(end);
     if (!part_called(parts, name.substr(1)).empty()) {

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double degrees = 180.0 / std::numbers::pi;
 
-/// The class of the style sheet that colours a stream's verdict.
+/// Returns the style sheet class that gives a stream's verdict its colour.
 std::string_view colour_of_stream(const TakePage& page, const std::string& stream) {
   for (const PageLane& lane : page.lanes) {
     if (lane.stream == stream) return to_string(lane.colour);
@@ -26,8 +26,8 @@ std::string_view colour_of_stream(const TakePage& page, const std::string& strea
   return to_string(PageColour::imu);
 }
 
-/// A row of cells. Cells that begin with '=' contain words and are left-aligned.
-/// Numbers are right-aligned, which is the style of a cell without a class.
+/// Returns a table row. A cell that begins with '=' contains words and is left-aligned. Other cells
+/// are numbers and are right-aligned.
 std::string row(std::string_view cell, const std::vector<std::string>& cells) {
   std::string out = "<tr>";
   for (const std::string& text : cells) {
@@ -46,21 +46,20 @@ std::string table(const std::vector<std::string>& heads, const std::string& rows
       row("th", heads), rows, caption);
 }
 
-/// The name of a stream, with its nodes if it has some.
+/// Returns the name of a stream, with the names of its nodes.
 std::string stream_name(const StreamReport& s) {
   return s.nodes.empty() ? s.stream : fmt::format("{} {}", s.stream, fmt::join(s.nodes, ", "));
 }
 
-/// The mean rate over the whole stream, which the device really sent at.
-/// A device's real rate differs from its nominal one.
+/// Returns the mean rate over the whole stream, which may differ from the nominal rate.
 std::string real_rate(const StampSurvey& survey) {
   const double length = seconds(survey.last - survey.first);
   if (survey.kept() < 2 || !(length > 0.0)) return "";
   return fmt::format("{:.4g} Hz", static_cast<double>(survey.kept() - 1) / length);
 }
 
-/// The samples that would fit into the steps longer than usual.
-/// A long step has room for itself and for the samples that did not come.
+/// Returns the number of missing samples: those that would fit into the steps that are longer than
+/// usual.
 std::string lost(const StampSurvey& survey) {
   if (survey.median_step_ns <= 0) return "";
   const double room =
@@ -72,27 +71,27 @@ std::string lost(const StampSurvey& survey) {
   return share.empty() ? "0" : fmt::format("{} ({})", grouped(count), share);
 }
 
-/// Samples that came but were not used, for any reason.
+/// Returns the number of samples that arrived but were not used, for any reason.
 std::string left_out(const StreamReport& s) {
   return grouped(s.survey.duplicates + s.survey.backward + s.survey.ahead + s.held_back);
 }
 
-/// The number of gaps within the take, and their time.
+/// Returns the number of gaps within the take and their total time.
 std::string gaps(const StreamReport& s) {
   if (s.gaps == 0) return "0";
   return fmt::format("{} ({:.2f} s)", s.gaps, 1e-9 * static_cast<double>(s.gap_time_ns));
 }
 
-/// Reports state positions in centimetres.
+/// Positions are stated in centimetres.
 std::string cm(double m) { return fmt::format("{:.1f}", 100.0 * m); }
 
-/// A share for a cell of a table, which should not be empty.
+/// Returns a share for a table cell; "0" instead of an empty text.
 std::string share_or_zero(std::uint64_t part, std::uint64_t whole) {
   const std::string text = share_text(part, whole);
   return text.empty() ? "0" : text;
 }
 
-/// The methods of docs/align_space.md in words.
+/// Returns the method of docs/align_space.md in words.
 std::string how_moved(const PageSpace& space) {
   if (space.report.method == "fit") return "by one rotation and translation, fitted to the take";
   if (space.report.method == "given") return "by one rotation and translation, as given";
@@ -100,7 +99,7 @@ std::string how_moved(const PageSpace& space) {
          "every frame, so that the root has no residual";
 }
 
-/// The names of bodies with measured bones: "kinect and kinect_2".
+/// Returns the names of bodies with measured bones: "kinect and kinect_2".
 std::string bodies_with_bones(const TakePage& page) {
   std::vector<std::string> names;
   for (const BoneLength& bone : page.bones) {
@@ -112,8 +111,7 @@ std::string bodies_with_bones(const TakePage& page) {
 
 }  // namespace
 
-/// Subject, action, length, frames and date.
-/// Stamps that count from a start have no date.
+/// States subject, action, length, frames and date. Stamps that count from a start have no date.
 std::string facts_text(const TakePage& page) {
   const AlignmentReport& report = page.report;
   std::vector<std::string> facts;
@@ -132,7 +130,7 @@ Quality quality_of(const TakePage& page) {
   return worst;
 }
 
-/// The verdicts in one line, bad streams first.
+/// States the verdicts in one line, bad streams first.
 std::string headline(const TakePage& page) {
   std::vector<std::string> good, usable, bad;
   for (const Verdict& verdict : page.verdicts) {
@@ -140,11 +138,11 @@ std::string headline(const TakePage& page) {
         verdict.quality == Quality::good ? good : (verdict.quality == Quality::bad ? bad : usable);
     list.push_back(verdict.stream);
   }
-  // A take without fault says so in one word.
+  // If all streams are good, the line begins with "Good".
   if (usable.empty() && bad.empty()) {
     return good.size() == 1 ? "Good" : fmt::format("Good: all {} streams", good.size());
   }
-  // The worst come first: they decide whether the take can be used.
+  // The worst streams come first, because they decide whether the take is usable.
   std::vector<std::string> parts;
   if (!bad.empty()) parts.push_back(fmt::format("{} bad", fmt::join(bad, ", ")));
   if (!usable.empty()) parts.push_back(fmt::format("{} usable", fmt::join(usable, ", ")));
@@ -152,7 +150,7 @@ std::string headline(const TakePage& page) {
   return escaped(fmt::format("{}", fmt::join(parts, "; ")));
 }
 
-/// A list item for each stream's verdict.
+/// Returns a list item for each stream's verdict.
 std::string verdict_items(const TakePage& page) {
   std::string out;
   for (const Verdict& verdict : page.verdicts) {
@@ -174,7 +172,7 @@ std::string worst_title(const TakePage& page) {
 std::string worst_items(const TakePage& page) {
   std::string out;
   for (const Concern& concern : page.worst) {
-    // Even a good take has a largest value; it must not look like a fault.
+    // Even a good take has a worst value. The addition shows that it is not a fault.
     const std::string small = concern.quality == Quality::good ? " (within the limits)" : "";
     out += fmt::format("<li>{}: {}{}</li>", escaped(concern.stream), escaped(words_of(concern)),
                        small);
@@ -182,9 +180,8 @@ std::string worst_items(const TakePage& page) {
   return out;
 }
 
-/// The numbers of the first screen: residuals, worst interval in time, shares of joints, worst
-/// node.
-/// Only numbers that exist are listed, so the list differs from take to take.
+/// Lists the numbers of the first screen: residuals, widest time interval, shares of joints, worst
+/// node. Only numbers that exist are listed, so the list differs between takes.
 std::string numbers_list(const TakePage& page) {
   std::string out;
   const auto add = [&out](const std::string& number, const std::string& what) {
@@ -194,7 +191,7 @@ std::string numbers_list(const TakePage& page) {
     add(cm(space.report.after_m) + " cm",
         space.report.stream + " from " + space.report.onto + ", rms");
   }
-  // The widest interval of all streams: one number answers whether times can be trusted.
+  // The widest interval of all streams shows whether times are reliable.
   std::optional<std::int64_t> widest;
   for (const StreamReport& s : page.report.streams) {
     if (s.worst_interval_ns) widest = std::max(widest.value_or(0), *s.worst_interval_ns);
@@ -204,8 +201,8 @@ std::string numbers_list(const TakePage& page) {
   }
   for (const StreamReport& s : page.report.streams) {
     const PageBody* body = find_named(page.bodies, s.stream);
-    // Only points that are not the reference: shares of joints say how well a Kinect saw the
-    // person.
+    // Shares of joints are stated only for points that are not the reference. They show how well a
+    // Kinect saw the person.
     if (body == nullptr || body->kind != PageKind::points || s.stream == page.report.reference) {
       continue;
     }
@@ -228,10 +225,10 @@ bool has_axes(const TakePage& page) {
                      [](const NodeFigures& n) { return n.has_orientation; });
 }
 
-/// The colours and marks of the player that occur in this take.
+/// Returns the legend of the player for this take.
 std::string legend(const TakePage& page) {
   std::string out;
-  // Rings and lines stand in the legend only if they can occur.
+  // Rings and lines are in the legend only if they can occur.
   bool points = false;
   for (const PageBody& body : page.bodies) {
     if (!body.in_take_space) continue;
@@ -245,7 +242,7 @@ std::string legend(const TakePage& page) {
   return out;
 }
 
-/// The caption of the player, for the parts that this take has.
+/// Returns the caption of the player for the parts that this take has.
 std::string player_caption(const TakePage& page) {
   std::string text = "The take in its space; floor in squares of 1 m.";
   if (!page.spaces.empty()) text += " Lines join each Kinect joint to its counterpart.";
@@ -258,11 +255,11 @@ std::string player_caption(const TakePage& page) {
   return text;
 }
 
-/// The table of streams: what each device sent, and what alignment made of it.
+/// Returns the table of streams: what each device sent, and how much of it alignment used.
 std::string time_table(const TakePage& page) {
   std::string rows;
   for (const StreamReport& s : page.report.streams) {
-    // The reference defines the rows, so it has neither an interval nor a nearest sample.
+    // The rows have the reference's stamps, so the reference has no interval and no nearest sample.
     const bool reference = s.stream == page.report.reference;
     rows +=
         row("td",
@@ -284,7 +281,8 @@ std::string time_table(const TakePage& page) {
       "invalid: within the take.");
 }
 
-/// The caption of figure 7. Without raw samples, the rows nearest to one stand for them.
+/// Returns the caption of figure 7 of the HFUT-MMD paper. Without raw samples, the nearest rows are
+/// shown instead.
 std::string detail_caption(const TakePage& page) {
   if (page.details.empty()) return "";
   const PageDetail& detail = page.details.front();
@@ -302,7 +300,7 @@ std::string detail_caption(const TakePage& page) {
                 1e3 * static_cast<double>(detail.near_s));
   text += " Grey: no value; no value is made up.";
   if (!page.spaces.empty()) text += " Thin: the joint's counterpart in the reference.";
-  // A long take has raw samples for a part only; the caption names the part.
+  // If a take is long, the page has raw samples only for a part, which the caption names.
   const double length = seconds(page.report.end - page.report.begin);
   if (detail.end_s < length || detail.begin_s > 0.0) {
     text += fmt::format(" Raw samples of {:.0f} to {:.0f} s only.", detail.begin_s,
@@ -311,12 +309,12 @@ std::string detail_caption(const TakePage& page) {
   return text;
 }
 
-/// A paragraph for each stream that was moved, and for each that stays in its own space.
-/// A stream in its own space can be looked at, but not together with the others.
+/// Returns a paragraph for each stream that was moved, and for each that keeps its own space. A
+/// stream in its own space can't be shown together with the others.
 std::string space_text(const TakePage& page) {
   std::string out;
   for (const PageSpace& space : page.spaces) {
-    // One angle says how far two devices were turned against each other.
+    // One angle states how far the two devices were rotated relative to each other.
     const Eigen::AngleAxisd turn(space.report.transform.rotation);
     out += fmt::format(
         "<p>{} was moved onto {} {}: distance {} cm rms, before {}; rotated by {:.1f}°.</p>",
@@ -331,7 +329,8 @@ std::string space_text(const TakePage& page) {
   return out;
 }
 
-/// The caption of table 5. Without one transform for the take, the places before it are not known.
+/// Returns the caption of table 5. If each row has its own transform, the original positions are
+/// not known.
 std::string table5_caption(const TakePage& page) {
   if (page.spaces.empty()) return "";
   const PageSpace& space = page.spaces.front();
@@ -348,7 +347,7 @@ std::string table5_caption(const TakePage& page) {
   return text + " Each panel has its own scale. Dashed bones and hollow joints: inferred.";
 }
 
-/// The caption of the residuals of each joint.
+/// Returns the caption of the residuals of each joint.
 std::string residual_caption(const TakePage& page) {
   if (page.spaces.empty()) return "";
   const SpaceReport& report = page.spaces.front().report;
@@ -361,7 +360,7 @@ std::string residual_caption(const TakePage& page) {
       several ? "" : " in " + escaped(report.onto));
 }
 
-/// The caption of the floor, with the zones if the Kinect's place is known.
+/// Returns the caption of the floor, with the zones if the Kinect's position is known.
 std::string floor_caption(const TakePage& page) {
   std::string text =
       "The floor from above: the paths of the root joints, and their present positions.";
@@ -374,12 +373,12 @@ std::string floor_caption(const TakePage& page) {
                     best_near_m, best_far_m, largest_near_m, largest_far_m, field_deg);
 }
 
-/// The table of joints by zone.
+/// Returns the table of joints by zone.
 std::string zone_table(const TakePage& page) {
   if (page.floors.empty()) return "";
   const PageFloor& floor = page.floors.front();
   constexpr std::array<const char*, zone_count> names{"best", "largest", "outside both"};
-  // Shares are of all joints, those at an unknown place too.
+  // Shares refer to all joints, including missing ones.
   std::uint64_t all = floor.missing;
   for (const auto& zone : floor.zones) all += zone.tracked + zone.inferred;
   std::string rows;
@@ -393,7 +392,7 @@ std::string zone_table(const TakePage& page) {
                "Joints by the floor zone they were in, over all rows.");
 }
 
-/// The caption of the bones' constancy; empty without bones.
+/// Returns the caption about bone lengths; empty without bones.
 std::string bones_caption(const TakePage& page) {
   if (page.bones.empty()) return "";
   return fmt::format(
@@ -406,7 +405,7 @@ std::string bones_caption(const TakePage& page) {
       bodies_with_bones(page));
 }
 
-/// The text about nodes, with a paragraph for each whose bone was not found by its name.
+/// Returns the text about nodes, with a paragraph for each node whose bone was not found by name.
 std::string node_text(const TakePage& page) {
   std::string out =
       "<p>Each node's measurements, compared with the motion of its bone in the mocap. A node is "
@@ -423,12 +422,12 @@ std::string node_text(const TakePage& page) {
   return out;
 }
 
-/// The table of differences between each node and its bone.
-/// Angles in degrees for people; the page's data are in radians.
+/// Returns the table of differences between each node and its bone. Angles are in degrees; the
+/// page's data are in radians.
 std::string node_table(const TakePage& page) {
   std::string rows;
   for (const NodeFigures& node : page.nodes) {
-    // An unknown number is an empty cell and not 0.
+    // An unknown number gives an empty cell, not 0.
     const auto number = [](bool known, double x, int digits) {
       return known ? fmt::format("{:.{}f}", x, digits) : std::string("");
     };
@@ -458,12 +457,12 @@ std::string raw_nodes_text(const TakePage& page) {
       page.raw_nodes_begin_s, page.raw_nodes_end_s);
 }
 
-/// The findings as a list.
+/// Returns the findings as a list.
 std::string findings_list(const TakePage& page) {
   if (page.report.findings.empty()) return "<p>Alignment found no problems.</p>";
   std::string out = "<ul class=\"findings\">";
   for (const Finding& finding : page.report.findings) {
-    // The marks of the style sheet: the same colours as those of verdicts.
+    // Findings have the same colours as verdicts.
     const std::string_view mark = finding.severity == Severity::error
                                       ? "bad"
                                       : (finding.severity == Severity::note ? "note" : "usable");
@@ -476,8 +475,8 @@ std::string findings_list(const TakePage& page) {
   return out + "</ul>";
 }
 
-/// The table of input files.
-/// The hashes let a reader check that the inputs are still the same files.
+/// Returns the table of input files. With the hashes, a reader can check that the inputs are still
+/// the same files.
 std::string inputs_table(const TakePage& page) {
   if (page.inputs.empty()) return "";
   std::string rows;
@@ -490,8 +489,8 @@ std::string inputs_table(const TakePage& page) {
   return table({"input", "bytes", "=SHA-256"}, rows, "The files that the take was made from.");
 }
 
-/// The note on how many rows the page stores.
-/// Readers must know that figures of a thinned page may miss short events.
+/// Returns the note on how many rows the page stores. If the page does not store every row, its
+/// figures may miss short events.
 std::string thinning_text(const TakePage& page) {
   if (page.stride == 1) {
     return fmt::format("The page holds every row of the take ({}).", grouped(page.report.frames));

@@ -15,8 +15,8 @@ namespace kinalign {
 
 namespace {
 
-/// The count of numbers that the page stores for one row of a group.
-/// A node has a rate, an acceleration, both also of its bone, an error, axes and a flag: 18.
+/// Returns the number of values that the page stores for one row of a group. A node has 18: a rate
+/// and an acceleration, the same for its bone, an error, axes and a flag.
 std::uint64_t numbers_of(const TakeGroup& group) {
   if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return 3 * clip->skeleton.joints();
   if (const auto* points = std::get_if<PointGroup>(&group.kind)) {
@@ -25,14 +25,14 @@ std::uint64_t numbers_of(const TakeGroup& group) {
   return 18 * std::get<ImuGroup>(group.kind).node_names.size();
 }
 
-/// A bin spans at least two rows: if stamps jitter by less than half a step, no bin is empty.
-/// At least one, else a lane would have no place for its row.
+/// Returns the number of bins, at least one. A bin has at least two rows, so that no bin is empty
+/// if stamps vary by less than half a step.
 std::size_t bins_of(const TakeHeader& header, std::size_t most) {
   const auto pairs = static_cast<std::size_t>(header.frames / 2);
   return std::max<std::size_t>(1, std::min(most, pairs));
 }
 
-/// The seconds of a stamp since the first row's.
+/// Returns the seconds from the first row's stamp to a stamp.
 double seconds_since(Time first, Time now) { return seconds(now - first); }
 
 }  // namespace
@@ -40,14 +40,13 @@ double seconds_since(Time first, Time now) { return seconds(now - first); }
 std::uint64_t page_stride(const TakeHeader& header, std::uint64_t most_numbers) {
   std::uint64_t numbers = 1;
   for (const TakeGroup& group : header.groups) numbers += numbers_of(group);
-  // Rounded up, so that the limit holds.
+  // The number is rounded up, so that the limit is kept.
   const std::uint64_t rows = std::max<std::uint64_t>(1, most_numbers / numbers);
   return std::max<std::uint64_t>(1, (header.frames + rows - 1) / rows);
 }
 
-/// A group of the take, with all the figures that are collected of it.
-/// Only skeletons and points have one. `floor`, `space` and `detail` are absent where they do not
-/// apply.
+/// A skeleton or points of the take, with all figures that are collected. `floor`, `space` and
+/// `detail` are absent if they do not apply.
 struct GroupFigures {
   std::size_t group = 0;
   BodyFigures figures;
@@ -56,7 +55,7 @@ struct GroupFigures {
   std::optional<DetailFigures> detail;
 };
 
-// `page` grows while rows are added; `row` counts all rows, `first` is the stamp of row 0.
+// `page` grows while rows are added. `row` counts all rows; `first` is the stamp of row 0.
 struct TakeFigures::State {
   TakeHeader header;
   TakeFigureOptions options;
@@ -95,8 +94,8 @@ std::optional<std::size_t> TakeFigures::State::body_called(const std::string& na
   return std::nullopt;
 }
 
-/// Every group has lanes; only skeletons and points are bodies. A body's index is its place in
-/// `bodies` and later in the page.
+/// Every group has lanes; only skeletons and points are bodies. A body has the same index in
+/// `bodies` and on the page.
 void TakeFigures::State::plan_bodies() {
   for (std::size_t g = 0; g < header.groups.size(); ++g) {
     lanes.emplace_back(header.groups[g], options.bins);
@@ -105,13 +104,13 @@ void TakeFigures::State::plan_bodies() {
   }
 }
 
-/// The transforms of the report whose two bodies are on the page, with their pairs of joints.
-/// Joints that one body lacks are left out of the pairs.
+/// Adds the report's transforms between bodies of the page, with their pairs of joints. Pairs with
+/// a joint that one body lacks are omitted.
 void TakeFigures::State::plan_spaces() {
   for (const SpaceReport& report : page.report.spaces) {
     const auto from = body_called(report.stream), onto = body_called(report.onto);
     if (!from || !onto) continue;
-    // Copied, because the page outlives the take's header.
+    // The report is copied, because the page outlives the take's header.
     PageSpace space;
     space.report = report;
     space.body = *from;
@@ -123,15 +122,15 @@ void TakeFigures::State::plan_spaces() {
       const auto a = index_of(ours, joint.joint), b = index_of(theirs, joint.onto);
       if (a && b) space.pairs.emplace_back(*a, *b);
     }
-    // The moved body is the Kinect: its place and direction are those of the transform.
+    // The moved body is a Kinect. The transform gives its position and direction.
     bodies[*from].floor = floor_of(report, *from);
     bodies[*from].space = page.spaces.size();
     page.spaces.push_back(std::move(space));
   }
 }
 
-/// A detail for each resampled stream of points.
-/// Only resampled points have raw samples between rows to compare with.
+/// Adds a detail for each resampled stream of points. Other streams have no raw samples between
+/// rows.
 void TakeFigures::State::plan_details() {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const TakeGroup& group = header.groups[bodies[b].group];
@@ -149,13 +148,14 @@ void TakeFigures::State::plan_details() {
   }
 }
 
-/// Nodes need a skeleton to be compared with. The first one in the take's space is preferred.
+/// Nodes are compared with a skeleton, preferably the first one in the take's space.
 void TakeFigures::State::plan_nodes() {
   std::optional<std::size_t> clip, nodes;
-  // Backwards, so that the first group of a kind wins.
+  // The loop runs backwards, so that the first group of each kind is used.
   for (std::size_t g = header.groups.size(); g-- > 0;) {
     const TakeGroup& group = header.groups[g];
-    // A skeleton outside the take's space can still be compared: it turns like its nodes.
+    // A skeleton outside the take's space can be compared too, because its bones rotate like its
+    // nodes.
     const bool better = !clip || group.space == "take";
     if (std::holds_alternative<ClipGroup>(group.kind) && better) clip = g;
     if (std::holds_alternative<ImuGroup>(group.kind)) nodes = g;
@@ -168,20 +168,20 @@ void TakeFigures::State::plan_nodes() {
                   std::get<ClipGroup>(header.groups[*clip].kind).skeleton, page.report.rate_hz);
 }
 
-/// A verdict for each group, and each input file once.
+/// Adds a verdict for each group, and lists each input file once.
 void TakeFigures::State::judge() {
   for (const TakeGroup& group : header.groups) {
     page.verdicts.push_back(verdict_of(page.report, group.name, group.files));
     for (const InputFacts& file : group.files) {
       const auto known = std::find(page.inputs.begin(), page.inputs.end(), file);
-      // Several groups may come from one file.
+      // Several groups may have the same input file.
       if (known == page.inputs.end()) page.inputs.push_back(file);
     }
   }
 }
 
-/// Adds a concern for each node that turns like the bone of another node.
-/// Only now, because the comparison of nodes needs all rows.
+/// Adds a concern for each node that rotates like the bone of another node. Called last, because
+/// the comparison of nodes needs all rows.
 void TakeFigures::State::judge_nodes() {
   const std::string& stream = header.groups[node_group].name;
   const auto verdict = std::find_if(page.verdicts.begin(), page.verdicts.end(),
@@ -195,19 +195,18 @@ void TakeFigures::State::judge_nodes() {
   }
 }
 
-/// Stamps beyond both ends fall into the first and the last bin.
+/// Returns the bin of a time. Times outside the take belong to the first or the last bin.
 std::size_t TakeFigures::State::bin_of(double s) const {
-  // A take of one row has no length; everything is in the first bin.
+  // A take of one row has no length, so its row is in the first bin.
   if (!(length_s > 0.0)) return 0;
   const double bin = std::floor(s / length_s * static_cast<double>(options.bins));
   return static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(options.bins - 1)));
 }
 
-/// Adds one row to all figures; the page stores every stride-th row.
-/// The one place where all figures see a row.
+/// Adds one row to all figures. The page stores every stride-th row.
 void TakeFigures::State::add_row(const TakeSlab& slab, std::size_t r) {
   const double at = seconds_since(*first, slab.stamps[r]);
-  // The first row is always kept.
+  // The first row is always stored.
   const bool keep = row++ % page.stride == 0;
   const std::size_t bin = bin_of(at);
   if (keep) page.seconds.push_back(static_cast<float>(at));
@@ -226,7 +225,7 @@ void TakeFigures::State::add_row(const TakeSlab& slab, std::size_t r) {
   }
 }
 
-/// Adds a row to a body's detail, with the joints that it was moved onto.
+/// Adds a row to a body's detail, with the joints onto which the body was moved.
 void TakeFigures::State::add_detail(const TakeSlab& slab, std::size_t r, double at,
                                     GroupFigures& body) {
   const std::variant<ClipRows, PointRows, ImuRows>& rows = slab.rows[body.group];
@@ -239,10 +238,10 @@ void TakeFigures::State::add_detail(const TakeSlab& slab, std::size_t r, double 
                    *JointRows::of(rows, body.figures.joints()), onto, r);
 }
 
-/// Adds the raw samples of the detail's body, moved like the body. The page must have its bodies
-/// already.
+/// Adds the raw samples of the detail's body, moved like the body. The page must already have its
+/// bodies.
 void TakeFigures::State::add_raw_samples(PageDetail& detail) const {
-  // Raw samples belong to a body by the stream's name.
+  // Raw samples are assigned to a body by the stream's name.
   const PageBody& body = page.bodies[detail.body];
   const auto raw = std::find_if(options.raw.begin(), options.raw.end(),
                                 [&](const RawPoints& r) { return r.stream == body.name; });
@@ -255,7 +254,7 @@ void TakeFigures::State::add_raw_samples(PageDetail& detail) const {
     const PageBody& onto = page.bodies[space->onto];
     move.space = &space->report;
     move.root = index_of(body.joint_names, how.root).value_or(body.joint_names.size());
-    // By the paper's method each sample is moved by the other root's path, which the page stores.
+    // With the method "paper" the other root's path moves each sample. The page stores that path.
     move.onto_seconds = &page.seconds;
     const std::size_t joints = onto.joint_names.size();
     const auto root = index_of(onto.joint_names, how.onto_root);
@@ -269,7 +268,7 @@ void TakeFigures::State::add_raw_samples(PageDetail& detail) const {
   add_raw(*raw, move, *first, detail);
 }
 
-/// Adds the raw samples of nodes, for a part short enough to limit their number.
+/// Adds the raw samples of nodes, for a part that is short enough to limit their number.
 void TakeFigures::State::add_raw_node_samples() {
   if (options.raw_nodes.empty() || !first) return;
   const DetailStretch detail{options.detail_begin_s,
@@ -285,7 +284,7 @@ void TakeFigures::State::add_raw_node_samples() {
                                    [&](const NodeFigures& n) { return n.node == raw.node; });
     if (raw.stream != stream || node == page.nodes.end()) continue;
     Quat sensor_from_bone = Quat::Identity();
-    // The mounting that alignment was given; without one, values were not turned.
+    // The mounting that alignment used. Without a mounting, the values were not rotated.
     if (how != nullptr && how->mounting.contains(raw.node)) {
       sensor_from_bone = quat(how->mounting.at(raw.node), 0).normalized();
     }
@@ -293,13 +292,13 @@ void TakeFigures::State::add_raw_node_samples() {
   }
 }
 
-/// The mean time between stored rows, for the lags of nodes.
+/// Returns the mean time between stored rows, which the lags of nodes need.
 double TakeFigures::State::kept_step_s() const {
   if (page.seconds.size() < 2) return 1.0;
   return static_cast<double>(page.seconds.back()) / static_cast<double>(page.seconds.size() - 1);
 }
 
-/// Sets colours. The bodies and the lanes must be in the page already.
+/// Sets the colours. The page must already have its bodies and lanes.
 void TakeFigures::State::colour() {
   for (const PageSpace& space : page.spaces) page.bodies[space.onto].colour = PageColour::mocap;
   for (PageLane& lane : page.lanes) {
@@ -349,7 +348,7 @@ TakePage TakeFigures::finish() {
     s.page.joint_states.push_back(body.figures.take_states());
     s.page.bodies.push_back(body.figures.take_body());
   }
-  // Bodies and lanes are in the page now; raw samples below need the bodies' positions.
+  // The page now has bodies and lanes. The raw samples below need the bodies' positions.
   s.colour();
   for (GroupFigures& body : s.bodies) {
     if (!body.detail) continue;
@@ -365,7 +364,7 @@ TakePage TakeFigures::finish() {
   return std::move(s.page);
 }
 
-// Each group has its own open gap; the longest of all is kept.
+// Each group may have an open gap. The longest gap of all groups is stored.
 void LongestGap::add(const TakeSlab& slab) {
   now_.resize(slab.rows.size());
   for (std::size_t r = 0; r < slab.stamps.size(); ++r) {
@@ -385,7 +384,7 @@ void LongestGap::add(const TakeSlab& slab) {
       }
       if (!now.open) now = {at, at, true};
       now.end = at;
-      // >= so that a gap of a single row counts, too.
+      // With >= a gap of a single row counts too.
       if (now.end - now.begin >= longest_.end - longest_.begin) longest_ = now;
     }
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the content of a take's page from its rows, in one pass slab by slab. Memory grows with the
-// rows that the page stores, not with the take's length.
+// Makes the content of a take's page from its rows, in one pass over the slabs. Memory grows with
+// the rows that the page stores, not with the take's length.
 #pragma once
 
 #include "kinalign/take/take.h"
@@ -15,22 +15,23 @@
 namespace kinalign {
 
 struct TakeFigureOptions {
-  /// The most numbers that the page stores for all bodies and nodes together; it stores every
-  /// stride-th row. 4.5 million make a page of less than 6 MB, measured on ten minutes of the demo.
+  /// The greatest number of values that the page stores for all bodies and nodes together. To keep
+  /// this limit, it stores every stride-th row. 4.5 million values give a page of less than 6 MB,
+  /// measured on ten minutes of the demo.
   std::uint64_t most_numbers = 4'500'000;
-  double detail_begin_s = 0.0;  // the detail's, s from the first row
+  double detail_begin_s = 0.0;  // begin of the detail, s from the first row
   double detail_length_s = 60.0;
-  std::size_t bins = 240;  // bins of a lane at most; a short take has one for two rows
+  std::size_t bins = 240;  // greatest number of bins; a short take has one bin for two rows
   std::vector<RawPoints> raw{};
   std::vector<RawNode> raw_nodes{};
-  std::size_t most_raw_node_samples = 40'000;  // limit for all nodes together: 0.3 MB
+  std::size_t most_raw_node_samples = 40'000;  // limit for all nodes together (0.3 MB)
 };
 
-/// Every stride-th row is stored, so that the page stays small; 1: all rows.
+/// Returns the stride: every stride-th row is stored, so that the page stays small. 1: all rows.
 std::uint64_t page_stride(const TakeHeader& header, std::uint64_t most_numbers);
 
-/// The constructor plans all figures from header and report; add() collects; finish() makes the
-/// page.
+/// The constructor plans all figures from header and report. add() collects the rows, and finish()
+/// returns the page.
 class TakeFigures {
  public:
   /// `header` and `report` are copied.
@@ -43,7 +44,7 @@ class TakeFigures {
 
   /// Adds the next rows of all groups, in order.
   void add(const TakeSlab& slab);
-  /// Call after the last slab. The figures are moved out.
+  /// Call after the last slab. Moves the figures out.
   TakePage finish();
 
  private:
@@ -51,14 +52,13 @@ class TakeFigures {
   std::unique_ptr<State> state_;
 };
 
-/// The longest time in which a stream of points has nothing valid, slab by slab. The detail of a
-/// long take is put around it.
-/// A pass of its own over the take, before TakeFigures, since the detail's place must be known
-/// first.
+/// Finds the longest time in which a stream of points has no valid point. The detail of a long take
+/// is placed around it. This needs a separate pass before TakeFigures, since TakeFigures must know
+/// the detail's position.
 class LongestGap {
  public:
   void add(const TakeSlab& slab);
-  /// The seconds from the first row to its middle; absent if there is none.
+  /// Returns the seconds from the first row to the middle of that time; absent if there is none.
   std::optional<double> middle_s() const;
 
  private:

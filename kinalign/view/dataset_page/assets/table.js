@@ -1,4 +1,5 @@
-// The table of a data set's page: filters and sorting. Without a script the table stands as it is, worst first.
+// Filters and sorts the table of a data set's page. Without a script, the table is sorted by
+// verdict, worst first.
 // SPDX-License-Identifier: Apache-2.0
 "use strict";
 (() => {
@@ -8,7 +9,7 @@
   const order = { bad: 0, usable: 1, good: 2 };
   const textOf = (row, key) => row.cells[place(key)].firstChild?.textContent ?? "";
 
-  /// A number, a verdict's rank or a text; null where nothing is known.
+  /// Returns a number, the rank of a verdict or a text; null if there is no value.
   function valueOf(row, key) {
     const text = textOf(row, key);
     if (key === "verdict") return order[text];
@@ -46,7 +47,8 @@
     document.querySelector(".none").hidden = count > 0;
   }
 
-  /// By a column; rows without a value stand last either way. `key` "": worst first, as the page was written.
+  /// Sorts by a column. Rows without a value are always last. `key` "": the original order, worst
+  /// first.
   function sort(key, descending) {
     const sign = descending ? -1 : 1;
     const sorted = rows.map((one) => ({ one, value: key === "" ? null : valueOf(one.row, key) }));

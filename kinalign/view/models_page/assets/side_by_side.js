@@ -1,5 +1,5 @@
-// One take and the answers of all methods to it, moving side by side. Each picture has the truth behind it. Dragging one
-// picture turns all of them.
+// Shows one take and the results of all methods for it, moving side by side. Each picture also
+// shows the truth in the background. Dragging one picture rotates all pictures.
 // SPDX-License-Identifier: Apache-2.0
 import { unpacked } from "../../page/assets/data.js";
 import { PageClock } from "../../page/assets/clock.js";
@@ -19,7 +19,7 @@ function readMotion(element) {
   return motion;
 }
 
-/// The middle of a body over all rows, and its lowest joint: what the camera looks at.
+/// Returns the middle of a body over all rows and its lowest joint. The camera looks at this point.
 function middleOf(body) {
   const middle = [0, 0, 0], count = body.positions.length / 3;
   let lowest = Infinity;
@@ -30,7 +30,7 @@ function middleOf(body) {
   return [middle[0], lowest, middle[2]];
 }
 
-/// Draws bodies as a camera at an angle about the vertical and above the floor sees them.
+/// Draws bodies as seen by a camera above the floor, at an angle about the vertical axis.
 class StickView {
   constructor(motion, body, camera) {
     this.motion = motion;
@@ -89,7 +89,7 @@ class StickView {
   }
 }
 
-/// Dragging turns the camera; the arrow keys do the same.
+/// Dragging or the arrow keys rotate the camera.
 function turnBy(view, camera, draw) {
   const turn = (x, y) => {
     camera.yaw -= x;

@@ -1,8 +1,8 @@
-// Skeletons drawn flat: front and top views as SVG.
+// Draws skeletons as SVG, from the front and from above.
 // SPDX-License-Identifier: Apache-2.0
 import { place, stateOf } from "./data.js";
 
-/// Bones and joints of a body in a row; `to` turns a point into [x, y] of the figure.
+/// Draws the bones and joints of a body in a row. `to` converts a point to [x, y] of the figure.
 export function drawBody(g, body, row, to) {
   const solid = [], dashed = [], full = [], hollow = [];
   for (let j = 0; j < body.joints; ++j) {
@@ -24,7 +24,8 @@ export function drawBody(g, body, row, to) {
     .attr("d", hollow.map((p) => `M${(p[0] - 2.5).toFixed(1)} ${p[1].toFixed(1)}a2.5 2.5 0 1 0 5 0a2.5 2.5 0 1 0 -5 0`).join(""));
 }
 
-/// Smallest box around the visible joints of bodies in a row, after `map`; null: none is visible.
+/// Returns the smallest box around the visible joints of the bodies in a row, after `map`; null: no
+/// joint is visible.
 export function boxOf(bodies, row, map) {
   let box = null;
   for (const body of bodies) {

@@ -1,5 +1,6 @@
-// Figures with axes as SVG, drawn again where their width changes. A figure over time shows the
-// page's clock as a line: a click moves the clock, dragging sideways zooms, a double click shows all.
+// Figures with axes as SVG. A figure is drawn again if its width changes. A figure over time shows
+// the time of the page as a line. A click sets the time, dragging sideways zooms, and a double
+// click shows the whole take.
 // SPDX-License-Identifier: Apache-2.0
 import { axisBottom, axisLeft } from "d3-axis";
 import { scaleBand, scaleLinear } from "d3-scale";
@@ -9,17 +10,17 @@ export const margin = { top: 8, right: 12, bottom: 36, left: 52 };
 
 const redraws = [];
 
-/// Draws all figures again, for paper or for the screen.
+/// Draws all figures again, before printing or after it.
 export function redrawAll() {
   for (const redraw of redraws) redraw();
 }
 
-/// A column of A4 or Letter, or half of one, in CSS pixels.
+/// Width of a column, or half of one, on A4 or Letter paper, in CSS pixels.
 const paperWidth = (box) => (box.closest(".pair") === null ? 690 : 335);
 
-/// Calls draw(svg, width) now, and when the width of the figure's box changes. `seen` is called when
-/// the figure comes into view; `visible()` says whether it is. While a take plays, figures out of view
-/// stay as they are.
+/// Calls draw(svg, width) now and whenever the width of the figure's box changes. `seen` is called
+/// when the figure becomes visible; `visible()` returns whether it is visible. While a take plays,
+/// figures that are not visible are not drawn again.
 export function drawn(id, draw, seen = () => {}) {
   const box = document.querySelector(`#${id} .plot`);
   if (box === null) return { redraw() {}, visible: () => false };
@@ -48,7 +49,7 @@ export function drawn(id, draw, seen = () => {}) {
   return { redraw, visible: () => visible };
 }
 
-/// Something that moves over a figure: an element of its own, so that the figure is not painted again.
+/// An element that moves over a figure. It is separate, so that the figure is not painted again.
 export function marker(id, kind) {
   const box = document.querySelector(`#${id} .plot`), made = document.createElement("div");
   made.className = kind;
@@ -67,7 +68,7 @@ export function marker(id, kind) {
 
 const hatchName = (svg, kind) => `hatch-${kind}-${svg.node().closest("figure").id}`;
 
-/// Hatched and hollow fills that CSS colours, of each kind of stream.
+/// Adds hatched and hollow fill patterns for each kind of stream. CSS sets their colours.
 export function addHatches(svg) {
   const defs = svg.append("defs");
   for (const kind of ["mocap", "kinect", "imu"]) {
@@ -78,7 +79,7 @@ export function addHatches(svg) {
 }
 export const hatch = (svg, kind) => `url(#${hatchName(svg, kind)})`;
 
-/// Axes of a plot; `at` = {left, top, width, height}. Labels have their units.
+/// Draws the axes of a plot; `at` = {left, top, width, height}. Labels contain the units.
 export function axes(svg, at, x, y, labels) {
   const ticks = Math.max(2, Math.floor(at.width / 90));
   svg.append("g").attr("class", "grid").attr("transform", `translate(${at.left},0)`)
@@ -97,7 +98,8 @@ export function axes(svg, at, x, y, labels) {
   }
 }
 
-/// The line "M x y L x y ..." through points; it is broken where one is null.
+/// Returns the SVG path "M x y L x y ..." through points. The path is interrupted at points that
+/// are null.
 export function path(points) {
   let text = "", open = false;
   for (const p of points) {
@@ -115,7 +117,7 @@ export const dots = (points) => points.map((p) => `M${p[0].toFixed(1)} ${p[1].to
 export const rings = (points, r) =>
   points.map((p) => `M${(p[0] - r).toFixed(1)} ${p[1].toFixed(1)}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`).join("");
 
-/// The stretch of time that several figures show together.
+/// The time range that several figures show together.
 export class TimeView {
   constructor(clock) {
     this.clock = clock;
@@ -139,7 +141,8 @@ export class TimeView {
   moveCursors() {
     for (const chart of this.charts) if (chart.place && chart.visible()) chart.place();
   }
-  /// draw(svg, at, x) fills the plot and returns nothing; `height` is the plot's own.
+  /// Adds a figure. draw(svg, at, x) draws the plot and returns nothing; `height` is the height of
+  /// the plot.
   add(id, height, draw) {
     const chart = { place: null, visible: () => false }, line = marker(id, "cursor");
     const made = drawn(id, (svg, width) => {
@@ -200,7 +203,7 @@ export class TimeView {
   }
 }
 
-/// Buttons beside a figure: closer, further, all.
+/// Adds buttons to a figure: zoom in, zoom out, show all.
 export function zoomButtons(id, view) {
   const bar = document.querySelector(`#${id} .tools`);
   if (bar === null) return;
@@ -218,8 +221,8 @@ export function zoomButtons(id, view) {
   }
 }
 
-/// A list to choose from, in front of a figure's buttons; `names` in order. What it returns puts other
-/// names into the list.
+/// Adds a selection list before a figure's buttons; `names` in order. Returns a function that
+/// replaces the names in the list.
 export function chooser(id, label, names, chosen, does) {
   const bar = document.querySelector(`#${id} .tools`);
   if (bar === null) return () => {};
@@ -234,7 +237,7 @@ export function chooser(id, label, names, chosen, does) {
   return offer;
 }
 
-/// Horizontal bars, one a name. `bars[i]` = {name, draw(g, y, height)}.
+/// Draws horizontal bars, one for each name. `bars[i]` = {name, draw(g, y, height)}.
 export function bars(svg, width, names, x, labels, draw) {
   const left = Math.min(150, Math.max(60, 7 * Math.max(...names.map((n) => n.length)) + 10)), row = 19;
   const at = { left, top: margin.top, width: width - left - margin.right, height: row * names.length };

@@ -1,4 +1,4 @@
-// The time that all figures and the player show.
+// The present time of the page, which all figures and the player show.
 // SPDX-License-Identifier: Apache-2.0
 
 export class PageClock {

@@ -1,4 +1,5 @@
-// The page's data: JSON in #take, its long series packed (kinalign/view/page/packed_series.h).
+// The page's data: JSON in the element #take. Long series in it are packed
+// (kinalign/view/page/packed_series.h).
 // SPDX-License-Identifier: Apache-2.0
 
 const blockRows = 256, mostZeros = 20, allZero = 31;
@@ -11,7 +12,7 @@ class BitReader {
     for (let i = 0; i < bytes.length; ++i) this.bytes[i] = bytes.charCodeAt(i);
     this.at = 0;
   }
-  /// The next 32 bits, without moving on.
+  /// Returns the next 32 bits without moving the position.
   peek() {
     const b = this.bytes, i = this.at >> 3, shift = this.at & 7;
     const high = ((b[i] << 24) | (b[i + 1] << 16) | (b[i + 2] << 8) | b[i + 3]) << shift;
@@ -34,7 +35,7 @@ class BitReader {
   }
 }
 
-/// A series [rows, columns] as numbers, row after row.
+/// Returns a packed series [rows, columns] as numbers, row after row.
 export function unpacked(series) {
   const { rows, columns, step, packed } = series;
   const out = new Float32Array(rows * columns);
@@ -59,7 +60,7 @@ export function unpacked(series) {
 
 const isSeries = (value) => value !== null && typeof value === "object" && "packed" in value;
 
-/// Replaces each packed series by its numbers, wherever it stands.
+/// Replaces each packed series in the data by its numbers.
 function unpackAll(value) {
   for (const key of Object.keys(value)) {
     if (isSeries(value[key])) value[key] = unpacked(value[key]);
@@ -75,7 +76,8 @@ export function readTake() {
   return take;
 }
 
-/// Index of the last of rising `times` that is not after `t`; 0 before the first.
+/// Returns the index of the last element of rising `times` that is not after `t`; 0 before the
+/// first.
 export function rowAt(times, t) {
   let low = 0, high = times.length - 1;
   while (low < high) {
@@ -91,7 +93,8 @@ export function place(body, row, joint) {
   return [body.positions[i], body.positions[i + 1], body.positions[i + 2]];
 }
 
-/// `share` of the way to the next row, where the joint is there in both.
+/// Returns the position at `share` of the way to the next row, if the joint is visible in both
+/// rows.
 export function placeBetween(body, row, joint, share) {
   const here = place(body, row, joint);
   if (share === 0 || stateOf(body, row, joint) === 0 || stateOf(body, row + 1, joint) === 0) return here;
@@ -108,14 +111,14 @@ export function distance(a, b) {
   return Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/// v turned by the rotation q = w,x,y,z.
+/// Rotates v by the rotation q = w,x,y,z.
 export function turned(q, v) {
   const [w, x, y, z] = q;
   const tx = 2 * (y * v[2] - z * v[1]), ty = 2 * (z * v[0] - x * v[2]), tz = 2 * (x * v[1] - y * v[0]);
   return [v[0] + w * tx + y * tz - z * ty, v[1] + w * ty + z * tx - x * tz, v[2] + w * tz + x * ty - y * tx];
 }
 
-/// Undoes the transform of a moved stream: the point as the stream itself had it.
+/// Undoes the transform of a moved stream. Returns the point in the stream's own space.
 export function beforeMove(space, point) {
   const [w, x, y, z] = space.rotation, t = space.translation;
   return turned([w, -x, -y, -z], [point[0] - t[0], point[1] - t[1], point[2] - t[2]]);

@@ -1,4 +1,5 @@
-// A take's page: reads the data, draws the figures, joins the player and the keyboard to one clock.
+// The script of a take's page. It reads the data, draws the figures, and connects player and
+// keyboard to one time.
 // SPDX-License-Identifier: Apache-2.0
 import { redrawAll, TimeView } from "./chart.js";
 import { PageClock } from "./clock.js";
@@ -35,7 +36,7 @@ function controls(take, clock, player) {
   for (const button of box.querySelectorAll("[data-view]")) {
     button.addEventListener("click", (event) => {
       if (player) player.look(button.dataset.view);
-      if (event.detail > 0) button.blur();  // by mouse: the space bar still plays
+      if (event.detail > 0) button.blur();  // after a mouse click the space bar still plays
     });
   }
   for (const tick of box.querySelectorAll("[data-part]")) {
@@ -70,7 +71,7 @@ function keyboard(take, clock, player, speed) {
   const typing = (event) => event.target instanceof Element && event.target.closest("select, input:not(.scrub), textarea, button, summary") !== null;
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || typing(event)) return;
-    // Up and down scroll the page, unless the player has the focus.
+    // The up and down keys scroll the page, unless the player has the focus.
     const vertical = event.key === "ArrowUp" || event.key === "ArrowDown" || event.key === "Home" || event.key === "End";
     if (vertical && !(event.target instanceof Element && event.target.closest("#player"))) return;
     const does = keys[event.key];
@@ -91,7 +92,7 @@ function makePlayer(take, clock) {
 
 const pause = () => new Promise((resolve) => setTimeout(resolve));
 
-/// Step by step, so that the verdict is there first, then the player, then the figures.
+/// Draws in steps: the verdict is shown first, then the player, then the figures.
 async function main() {
   await pause();
   const take = readTake(), clock = new PageClock(take.length_s);

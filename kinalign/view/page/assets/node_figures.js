@@ -1,4 +1,4 @@
-// A node's signals against those that the mocap implies at its bone.
+// Compares a node's signals with the signals that follow from the mocap's motion of its bone.
 // SPDX-License-Identifier: Apache-2.0
 import { scaleLinear } from "d3-scale";
 
@@ -13,7 +13,7 @@ const choices = [
   ["z", (v, k) => v[3 * k + 2]],
 ];
 
-/// Raw samples [seconds, value] within a time; none where they are more than `most`.
+/// Returns the raw samples [seconds, value] in a time range; none if there are more than `most`.
 function rawWithin(raw, [begin, end], most) {
   if (!raw) return [];
   const first = rowAt(raw.seconds, begin), last = rowAt(raw.seconds, end), out = [];
@@ -24,7 +24,7 @@ function rawWithin(raw, [begin, end], most) {
   return out;
 }
 
-/// Two curves over time; null where the node has nothing.
+/// Draws two curves over time. Rows without a value of the node are null.
 function compared(take, view, id, label, of) {
   view.add(id, 150, (svg, at, x) => {
     const first = rowAt(take.seconds, view.domain[0]), last = rowAt(take.seconds, view.domain[1]);
@@ -51,7 +51,8 @@ function compared(take, view, id, label, of) {
       high = Math.max(high, v);
     }
     if (low > high) [low, high] = [0, 1];
-    // From zero, unless that would hide what changes: gravity is in an acceleration.
+    // The axis begins at zero, unless that would hide small changes, as with gravity in an
+    // acceleration.
     if (low > 0 && high - low > 0.3 * high) low = 0;
     const y = scaleLinear([low, high], [at.top + at.height, at.top]).nice(4);
     axes(svg, at, x, y, { x: "time / s", y: label });

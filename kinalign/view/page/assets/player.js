@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The 3D view: both skeletons, the lines between paired joints, the nodes' axes, the Kinect and its
-// zones, on a floor of 1 m squares. Hollow joints are inferred, or stand where a missing joint was
-// last seen.
+// The 3D view: both skeletons, lines between paired joints, the nodes' axes, and the Kinect with
+// its zones, on a floor with squares of 1 m. A hollow joint is inferred, or it is missing and drawn
+// at its last seen position.
 // SPDX-License-Identifier: Apache-2.0
 import {
   AmbientLight, BufferGeometry, Color, CylinderBufferGeometry, DirectionalLight, EdgesGeometry, Float32BufferAttribute, Group, InstancedMesh,
@@ -15,13 +15,13 @@ import { facing } from "./space_figures.js";
 const up = new Vector3(0, 1, 0);
 const colourNames = ["--mocap", "--kinect", "--imu", "--ink", "--faint", "--paper", "--residual"];
 
-/// The page's colours as CSS has them now.
+/// Returns the page's colours as CSS defines them at this moment.
 function colours() {
   const style = getComputedStyle(document.documentElement);
   return Object.fromEntries(colourNames.map((name) => [name.slice(2), new Color(style.getPropertyValue(name).trim())]));
 }
 
-/// Cylinders from point to point.
+/// Draws cylinders between pairs of points.
 class Sticks {
   constructor(most, radius, scene) {
     this.material = new MeshLambertMaterial();
@@ -54,7 +54,7 @@ class Sticks {
   }
 }
 
-/// Discs and rings at joints, of one size on the screen whatever their distance.
+/// Draws discs and rings at joints. Their size on the screen does not depend on the distance.
 class JointDots {
   constructor(most, scene) {
     this.geometry = new BufferGeometry();
@@ -91,7 +91,7 @@ class JointDots {
   }
 }
 
-/// The row in which each joint was last seen, up to each row; -1: never.
+/// Returns for each row the last row so far in which each joint was seen; -1: never.
 function lastSeen(body, rows) {
   const seen = new Int32Array(rows * body.joints);
   for (let j = 0; j < body.joints; ++j) {
@@ -136,7 +136,7 @@ class Body3D {
   }
 }
 
-/// Lines between the joints of a pair.
+/// Draws lines between the joints of each pair.
 class Residuals3D {
   constructor(take, scene) {
     this.take = take;
@@ -155,7 +155,7 @@ class Residuals3D {
   }
 }
 
-/// Each node's x, y and z axis, dark to light, at its bone.
+/// Draws the x, y and z axis of each node, from dark to light, at its bone.
 class Axes3D {
   constructor(take, scene) {
     this.body = take.bodies[take.node_body];
@@ -179,7 +179,7 @@ class Axes3D {
     }
     for (const part of [...this.parts, this.hollow]) part.end();
   }
-  /// Half way along the bone that begins at the joint.
+  /// Returns the middle of the bone that begins at the joint.
   middleOf(row, joint, share) {
     const child = this.body.parents.indexOf(joint), a = placeBetween(this.body, row, joint, share);
     if (child < 0) return a;
@@ -188,7 +188,7 @@ class Axes3D {
   }
 }
 
-/// The height of the floor: 2 % of the rows have their lowest joint below it.
+/// Returns the height of the floor. In 2 % of the rows the lowest joint is below it.
 function floorHeight(take) {
   const body = take.bodies.find((b) => b.in_take_space && b.kind === "clip") ?? take.bodies[0];
   const lows = [];
@@ -253,7 +253,8 @@ class Floor3D {
   }
 }
 
-/// A camera around a point: dragging turns it, a pinch or the wheel with Ctrl moves it closer.
+/// A camera that moves around a point. Dragging rotates the camera; a pinch, or the wheel with
+/// Ctrl, changes its distance.
 class Orbit {
   constructor(canvas, moved) {
     this.camera = new PerspectiveCamera(35, 1, 0.05, 100);
@@ -301,7 +302,7 @@ class Orbit {
   }
 }
 
-/// Throws where the browser has no WebGL.
+/// The player. Its constructor throws an exception if the browser has no WebGL.
 export class Player {
   constructor(canvas, take, clock) {
     this.take = take;
@@ -332,7 +333,7 @@ export class Player {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.recolour());
     this.show();
   }
-  /// The place of the first body's root joint, now or when it was last seen.
+  /// Returns the position of the first body's root joint in this row, or where it was last seen.
   centre(row) {
     const last = this.bodies[0].seen[row * this.followed.joints];
     return place(this.followed, last >= 0 ? last : row, 0);
@@ -358,7 +359,7 @@ export class Player {
     this.floor.colour(c);
     this.draw();
   }
-  /// A copy for paper: what WebGL draws now is shown only later, which is too late for a printer.
+  /// Makes a copy for printing. WebGL shows its image only later, which is too late for a printer.
   copyForPaper() {
     const copy = this.canvas.parentElement.querySelector(".paper") ?? document.createElement("canvas");
     copy.className = "paper";
@@ -380,7 +381,7 @@ export class Player {
   }
   show() {
     const { seconds, stride, rows } = this.take, row = rowAt(seconds, this.clock.now);
-    // If the page leaves out rows, joints move straight from one row of the page to the next.
+    // If the page does not store every row, joints move in a straight line between stored rows.
     const apart = row + 1 < rows ? seconds[row + 1] - seconds[row] : 0;
     const share = stride > 1 && apart > 0 ? Math.min(1, (this.clock.now - seconds[row]) / apart) : 0;
     if (row === this.row && share === this.share) return;
@@ -398,7 +399,7 @@ export class Player {
   draw() {
     if (!this.orbit) return;
     this.orbit.place();
-    // From where the Kinect stands its box would hide the person.
+    // If the view is from the Kinect's position, the Kinect's box would hide the person.
     const kinect = this.floor.kinect;
     if (kinect) kinect.visible = kinect.position.distanceTo(this.orbit.camera.position) > 2;
     this.renderer.render(this.scene, this.orbit.camera);

@@ -1,5 +1,6 @@
-// Space: both skeletons before and after (the paper's table 5), residuals, the floor with the
-// Kinect's zones, shares of inferred joints, lengths of bones.
+// The figures about space: both skeletons before and after alignment (table 5 of the HFUT-MMD
+// paper), residuals, the floor with the Kinect's zones, shares of inferred joints, and bone
+// lengths.
 // SPDX-License-Identifier: Apache-2.0
 import { scaleLinear } from "d3-scale";
 
@@ -7,10 +8,11 @@ import { addHatches, axes, bars, chooser, drawn, hatch, margin, marker, path } f
 import { boxOf, drawBody } from "./bodies.js";
 import { beforeMove, distance, place, rowAt, stateOf } from "./data.js";
 
-/// The direction in which the Kinect looks, along the floor; without one, at someone who faces +z.
+/// Returns the direction along the floor in which the Kinect looks. Without a Kinect, it is the
+/// direction towards a person who faces +z.
 export const facing = (take) => (take.floors.length > 0 ? take.floors[0].forward : [0, 0, -1]);
 
-/// Seen by someone who stands where the Kinect stands: x to the right, y up.
+/// The view from the Kinect's position: x to the right, y up.
 function frontOf(forward) {
   const [fx, , fz] = forward;
   return (p) => [-(p[0] * fz - p[2] * fx), p[1]];
@@ -22,7 +24,7 @@ const residualOf = (take, space, row, [a, b]) => {
   return distance(place(ours, row, a), place(theirs, row, b));
 };
 
-/// A panel of table 5: `moved(body, point)` says where a point is drawn.
+/// Draws a panel of table 5. `moved(body, point)` returns the position at which a point is drawn.
 function panel(svg, box, take, bodies, row, moved, map) {
   const all = boxOf(bodies, row, (body, p) => map(moved(body, p)));
   if (all === null) return;
@@ -37,14 +39,14 @@ function panel(svg, box, take, bodies, row, moved, map) {
   for (const body of bodies) drawBody(g, body, row, (p) => to(map(moved(body, p))));
 }
 
-/// The moved body that figures 5 to 7 show. `space` is absent if no body has pairs of joints.
+/// The moved body in figures 5 to 7. If no body has pairs of joints, `space` is not set.
 export class SpaceChoice {
   constructor(take) {
     this.spaces = take.spaces.filter((space) => space.pairs.length > 0);
     this.space = this.spaces[0];
     this.changed = [];
   }
-  /// A list to choose from, where there are several.
+  /// If there are several moved bodies, adds a list to choose one.
   offer() {
     if (this.spaces.length < 2) return;
     chooser("table5", "Stream", this.spaces.map((space) => `${space.stream} on ${space.onto_stream}`), 0, (i) => {
@@ -54,7 +56,8 @@ export class SpaceChoice {
   }
 }
 
-/// The panels of table 5: each a name, where a body's point is drawn, and from where it is seen.
+/// Returns the panels of table 5. Each has a name, the positions of a body's points, and a viewing
+/// direction.
 function panelsOf(take, space) {
   const moved = take.bodies[space.body], front = frontOf(facing(take)), above = (p) => [p[0], -p[2]];
   const before = (body, p) => (body === moved ? beforeMove(space, p) : p), after = (_, p) => p;
@@ -91,7 +94,8 @@ export function table5(take, clock, choice) {
     touched = touched || clock.now > 0;
     const now = rowAt(take.seconds, clock.now);
     if (!touched || now === row || !figure.visible()) return;
-    // Drawing four skeletons takes longer than a frame of the player: ten times a second will do.
+    // Drawing four skeletons takes longer than a frame of the player, so they are drawn ten times
+    // per second.
     if (clock.playing && Math.abs(take.seconds[now] - take.seconds[row]) < 0.1 * clock.speed) return;
     row = now;
     figure.redraw();
@@ -99,7 +103,7 @@ export function table5(take, clock, choice) {
   });
 }
 
-/// A row in which all paired joints are tracked, near a third of the take.
+/// Returns a row near one third of the take in which all paired joints are tracked.
 function seenRow(take, space) {
   const ours = take.bodies[space.body], start = Math.floor(take.rows / 3);
   for (let i = 0; i < take.rows; ++i) {
@@ -124,7 +128,7 @@ export function residualByJoint(choice) {
   choice.changed.push(figure.redraw);
 }
 
-/// Distance of each pair over time: the rms of all, and the worst of them, in cm.
+/// Returns the distance of each pair over time, in cm: the rms of all pairs and the worst pair.
 function residualsOf(take, space) {
   const rms = new Array(take.rows), worst = new Array(take.rows);
   for (let row = 0; row < take.rows; ++row) {
@@ -174,14 +178,14 @@ export function residualOverTime(take, view, choice) {
   });
 }
 
-/// The floor from above: ways of the roots, the Kinect and its zones.
+/// Draws the floor from above: paths of the root joints, the Kinect and its zones.
 export function floorFigure(take, clock) {
   const bodies = take.bodies.filter((body) => body.in_take_space);
   if (bodies.length === 0) return;
   const floor = take.floors[0];
   const forward = facing(take), right = [-forward[2], 0, forward[0]];
   const origin = floor ? floor.camera : [0, 0, 0];
-  // The Kinect at the bottom, what it looks at above it.
+  // The Kinect is at the bottom and looks upwards.
   const flat = (p) => [(p[0] - origin[0]) * right[0] + (p[2] - origin[2]) * right[2], (p[0] - origin[0]) * forward[0] + (p[2] - origin[2]) * forward[2]];
   const ways = bodies.map((body) => {
     const way = [];
@@ -240,7 +244,7 @@ function drawZones(svg, floor, to) {
   svg.append("text").attr("class", "name").attr("x", kx + 12).attr("y", ky + 4).text("Kinect");
 }
 
-/// Joint by joint: measured, guessed, missing.
+/// Draws for each joint the shares of tracked, inferred and missing rows.
 export function stateFigure(take) {
   const points = take.bodies.filter((b) => b.kind === "points");
   const kinect = points.findIndex((b) => b.colour === "kinect");
@@ -269,7 +273,8 @@ export function stateFigure(take) {
   });
 }
 
-/// Each bone's mean length, its deviation and its range, as differences from the mean.
+/// Draws the mean length of each bone, with standard deviation and range as differences from the
+/// mean.
 export function boneFigure(take) {
   const bones = take.bones;
   if (bones.length === 0) return;

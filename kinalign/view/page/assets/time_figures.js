@@ -1,4 +1,5 @@
-// When each stream measured, how far rows are from raw samples, and the paper's figure 7.
+// The figures about time: when each stream has samples, how far rows are from raw samples, and
+// figure 7 of the HFUT-MMD paper.
 // SPDX-License-Identifier: Apache-2.0
 import { scaleLinear } from "d3-scale";
 
@@ -7,7 +8,8 @@ import { rowAt } from "./data.js";
 
 const laneName = (lane) => (lane.part ? `${lane.stream} ${lane.part}` : lane.stream);
 
-/// A bar a stream: measured filled, guessed hatched, missing empty.
+/// Draws one bar for each stream: measured parts are filled, inferred parts hatched, missing parts
+/// empty.
 export function laneFigure(take, view) {
   const row = 24, lanes = take.lanes;
   view.add("lanes", row * lanes.length, (svg, at, x) => {
@@ -39,7 +41,8 @@ export function laneFigure(take, view) {
   });
 }
 
-/// Distances to raw samples, and half-widths of the stamps' intervals, in milliseconds.
+/// Draws the time to the nearest raw sample and the half-width of the stamps' intervals, in
+/// milliseconds.
 export function distanceFigure(take, view) {
   const lanes = take.lanes.filter((lane) => lane.resampled);
   if (lanes.length === 0) return;
@@ -60,7 +63,8 @@ export function distanceFigure(take, view) {
   });
 }
 
-/// The arrays that figure 7 draws: of the detail, or all rows where the page keeps them.
+/// Returns the arrays that figure 7 draws: those of the detail, or all rows if the page stores
+/// every row.
 function curveOf(take, detail) {
   const body = take.bodies[detail.body], space = take.spaces.find((s) => s.body === detail.body);
   if (detail.seconds) {
@@ -81,7 +85,7 @@ function curveOf(take, detail) {
   };
 }
 
-/// Seconds of the longest stretch without the joint, or null.
+/// Returns the length in seconds of the longest time without the joint, or null.
 function longestGap(curve, joint) {
   let best = null, begin = null;
   for (let row = 0; row < curve.seconds.length; ++row) {
@@ -96,7 +100,7 @@ function longestGap(curve, joint) {
   return best;
 }
 
-/// Raw samples of a joint within the times shown: [seconds, value, state].
+/// Returns the raw samples of a joint in the visible time range: [seconds, value, state].
 function rawOf(detail, curve, joint, axis, [begin, end]) {
   const out = [];
   if (detail.has_raw) {
@@ -116,7 +120,7 @@ function rawOf(detail, curve, joint, axis, [begin, end]) {
   return out;
 }
 
-/// The stretches shown in which the joint is missing.
+/// Returns the visible time ranges in which the joint is missing.
 function missing(curve, joint, first, last) {
   const out = [];
   let begin = null;
@@ -131,7 +135,7 @@ function missing(curve, joint, first, last) {
   return out;
 }
 
-/// A wrist moves most.
+/// Returns the index of a wrist, because wrists move most.
 function usualJoint(names) {
   return ["WristRight", "HandRight", "RightHand"].map((name) => names.indexOf(name)).find((j) => j >= 0) ?? 0;
 }
