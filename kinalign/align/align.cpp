@@ -117,9 +117,9 @@ AlignmentReport begin_report(const Recording& recording, const AlignPlan& plan) 
 /// report are counted here.
 struct Counts {
   std::uint64_t rows = 0;
-  Time begin{}, end{};                  // first and last row
-  std::vector<ResidualSums> residuals;  // for each space
-  std::vector<Marks> marks;             // for each stream
+  Time begin{}, end{};                  // times of the first and the last row
+  std::vector<ResidualSums> residuals;  // one for each space
+  std::vector<Marks> marks;             // one for each stream
 };
 
 Counts no_counts(const Recording& recording, const std::vector<SpacePlan>& spaces) {

@@ -29,7 +29,8 @@ struct Steps {
   double long_share = 0.0;  // share of the stream's time that is in long steps
 };
 
-/// Absent for counted stamps, which are always regular, and for too few samples.
+/// Computes the steps. The result is absent for counted stamps, which are always regular, and for
+/// too few samples.
 std::optional<Steps> steps_of(const RecordedStream& s) {
   constexpr std::uint64_t enough = 10;
   const StampSurvey& survey = s.survey;

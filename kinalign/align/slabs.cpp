@@ -96,7 +96,7 @@ struct SlabMaker::State {
   const AlignPlan* plan = nullptr;
   std::vector<StreamRows> streams;
   ImuRows nodes;                     // rows of one stream, before they are copied into the group
-  std::vector<RotationSigns> signs;  // for each group
+  std::vector<RotationSigns> signs;  // one for each group
   std::vector<ReadNext> rests;       // streams that must be read to their ends
   std::uint64_t rest_rows = 0;
   std::uint64_t done = 0;

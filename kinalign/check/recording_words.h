@@ -14,7 +14,7 @@ namespace kinalign {
 /// another sender.
 std::string sender_name(const std::string& stream, const std::string& node,
                         const std::string& place);
-/// The same, with the place on the body that the recording states.
+/// Returns the same name, with the place on the body that the recording states.
 std::string sender_name(const std::string& stream, const std::string& node,
                         const RecordingSurvey& survey);
 /// Returns text such as "mocap from 192.168.7.5:51234" or "imu waist from 192.168.7.21:4000".

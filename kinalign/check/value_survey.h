@@ -54,9 +54,9 @@ class PointSizes {
   void judge_unit(FileFindings& out) const;
 
   std::uint64_t all_frames_ = 0, seen_frames_ = 0;
-  std::uint64_t inferred_ = 0, tracked_ = 0;  // numbers of points
+  std::uint64_t inferred_ = 0, tracked_ = 0;  // numbers of inferred and tracked points
   MeanSize person_, far_;  // m; diagonals of boxes around a frame's points: up to 20 m, and more
-  std::uint64_t most_points_ = 0;             // greatest number of points seen in one frame
+  std::uint64_t most_points_ = 0;  // greatest number of points seen in one frame
   std::vector<Seen> joints_;
 };
 

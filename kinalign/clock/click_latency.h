@@ -29,7 +29,7 @@ struct ClickLatency {
 /// the cases.
 inline constexpr std::size_t least_click_pairs = 6;
 
-/// Absent if there are fewer than six pairs.
+/// The result is absent if there are fewer than six pairs.
 std::optional<ClickLatency> click_latency(std::span<const ClickPair> pairs);
 
 /// A take that two clicks began and ended, and its number of frames.
@@ -45,7 +45,7 @@ struct ClickedStep {
   double latency_difference_s = 0.0, latency_deviation_s = 0.0;
 };
 
-/// Absent if there are fewer than three takes or all have the same length.
+/// The result is absent if there are fewer than three takes or all have the same length.
 std::optional<ClickedStep> clicked_step(std::span<const ClickedTake> takes);
 
 }  // namespace kinalign

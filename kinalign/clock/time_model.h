@@ -32,7 +32,7 @@ TimeModel shared_clock();
 /// Converts the stamp to the take's time axis.
 Time take_time(const TimeModel& model, Time stamp);
 
-/// The half-width at a stamp.
+/// Returns the half-width of the time interval at a stamp.
 std::optional<Duration> half_width(const TimeModel& model, Time stamp);
 
 /// Returns whether at least one piece has a half-width.

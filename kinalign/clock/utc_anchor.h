@@ -29,7 +29,7 @@ struct WallClockStep {
 /// only gives the date, and later changes of the wall clock have no effect. The error is the drift
 /// of the host's crystal, about 20 ppm.
 struct UtcAnchor {
-  Duration utc_minus_raw{};          // from the first pair
+  Duration utc_minus_raw{};          // computed from the first pair
   std::vector<WallClockStep> steps;  // changes above a millisecond that no slew explains
 };
 

@@ -19,7 +19,7 @@ struct FoldTake {
 /// The takes of one fold. Methods are fitted to the takes `learnt` and judged on the takes
 /// `tested`. No take is in both.
 struct Fold {
-  std::string name;                         // "subject 03"
+  std::string name;                         // such as "subject 03"
   std::vector<std::string> learnt, tested;  // names of takes
   std::vector<std::string> judged{};        // with a split: the takes of its part "validation"
 };

@@ -76,7 +76,7 @@ Result<void> check_names(const Value& top, const Manifest& manifest) {
   for (const StreamOptions& stream : manifest.streams) known.push_back(stream.name);
   // `where`: the value in the file, whose line the error states.
   const auto check = [&](const std::string& stream, const Value* where) -> Result<void> {
-    if (stream.empty() || where == nullptr) return {};  // not in this file
+    if (stream.empty() || where == nullptr) return {};  // the file does not name a stream
     if (std::find(known.begin(), known.end(), stream) != known.end()) return {};
     return at(*where, unknown_name(stream, "a stream of this file", known));
   };

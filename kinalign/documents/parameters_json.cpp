@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* schema = "kinalign.parameters/1";
 
-// ---- to JSON
+// ---- conversion to JSON
 
 /// Converts the value at an option's address to JSON. An absent optional value becomes null, so
 /// that its key is written too.
@@ -50,7 +50,7 @@ Json stream_to_json(StreamOptions stream) {
   return out;
 }
 
-// ---- from JSON
+// ---- conversion from JSON
 
 Value value_of(const Json& json, std::string key, std::string path) {
   // `line` stays 0, because JSON values are named by their path, such as streams[0].gap_ms.

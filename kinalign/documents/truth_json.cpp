@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* truth_schema = "kinalign.truth/1";
 
-// ---- to JSON
+// ---- conversion to JSON
 
 Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Json json_of(const Quat& q) { return {q.w(), q.x(), q.y(), q.z()}; }

@@ -36,7 +36,7 @@ void add_content(const Knots& raw, const Knots& rows, std::size_t first, Carried
 
 /// Names and limits for the message.
 struct ContentNames {
-  std::string stream, quantity;    // "imu", "acceleration"
+  std::string stream, quantity;    // such as "imu" and "acceleration"
   std::vector<std::string> parts;  // [contents] joints or nodes
   double grid_hz;
   double noise;  // rms noise of any sensor, in the quantity's unit; smaller differences are ignored

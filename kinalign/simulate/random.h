@@ -25,7 +25,7 @@ class RandomStream {
   constexpr RandomStream(std::uint64_t seed, std::uint64_t stream)
       : base_(mix64(mix64(seed) ^ stream)) {}
 
-  /// Uniform in (0, 1).
+  /// Returns a uniform number in (0, 1).
   constexpr double uniform(std::uint64_t k, std::uint64_t lane) const {
     return (static_cast<double>(mix64(base_ + 16 * k + lane) >> 11) + 0.5) * 0x1p-53;
   }

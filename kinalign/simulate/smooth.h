@@ -31,7 +31,7 @@ inline double glide(double x) {
   x = std::clamp(x, 0.0, 1.0);
   if (x > 0.5) return 1.0 - glide(1.0 - x);
   if (x >= ramp) return speed * (x - 0.5 * ramp);
-  const double u = x / ramp;  // the integral of rise
+  const double u = x / ramp;  // the polynomial below is the integral of rise()
   return speed * ramp * u * u * u * u * u * (7.0 + u * (-14.0 + u * (10.0 - 2.5 * u)));
 }
 

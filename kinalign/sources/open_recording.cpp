@@ -76,7 +76,7 @@ struct NamedFile {
   const StreamOptions* stated = nullptr;
   StreamOptions options;
   StreamFile file;
-  std::string remembered;  // its name in the take
+  std::string remembered;  // the file's name in the take
   bool is_first = true;    // it is the first file of its stream
   // The name in messages, such as "mocap" or "imu waist".
   std::string name() const { return options.name + (file.node.empty() ? "" : " " + file.node); }
@@ -213,8 +213,8 @@ Result<void> check_texts(const Manifest& manifest) {
 
 /// Files that are opened together: the files of all streams of one recording, or a single file.
 struct Group {
-  std::string path;                // as written for the first file
-  std::filesystem::path one_path;  // the same for ./a.mcap and a.mcap
+  std::string path;                // path as written for the first file
+  std::filesystem::path one_path;  // normalised path; the same for ./a.mcap and a.mcap
   bool is_recording = false;
   std::vector<std::size_t> named;  // indices of the files
 };

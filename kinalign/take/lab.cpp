@@ -99,7 +99,7 @@ bool is_number(const std::string& text) {
 /// Fails if two nodes have the same place, or if a place may be another node's id. Messages name a
 /// node by its place, or by its id if it has no place. Nodes that are not listed may send too.
 Result<void> check_places(const DeviceOptions& device) {
-  std::map<std::string, std::string> ids;  // by place
+  std::map<std::string, std::string> ids;  // node id by place
   for (const auto& [id, place] : device.nodes) {
     const auto [other, is_new] = ids.emplace(place, id);
     if (!is_new) {

@@ -32,7 +32,7 @@ struct DeviceOptions {
 /// Options of recording that apply to all devices.
 struct RecordOptions {
   double pre_roll_s = 5.0;           // seconds kept in memory before a take
-  std::string compression = "zstd";  // or none
+  std::string compression = "zstd";  // "zstd" or "none"
 };
 
 /// The content of one lab.toml, changed by the flags of `kinalign record`. Any combination can be

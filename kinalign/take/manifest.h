@@ -62,14 +62,14 @@ struct StreamOptions {
 /// How a stream of points is moved into the space of the reference. The methods are "none", "paper"
 /// (of the HFUT-MMD paper, section 3.1), "fit" and "given".
 struct SpaceOptions {
-  std::string method = "none";      // none, paper, fit, given
+  std::string method = "none";      // "none", "paper", "fit" or "given"
   std::string onto;                 // the stream onto which points are moved; empty: the reference
   double rotation_y_deg = 60.0;     // paper: A_rot, counter-clockwise seen from +y
-  double magnification = 1.0;       // paper: the factor m
-  std::vector<double> rotation;     // given: w,x,y,z
+  double magnification = 1.0;       // for method paper: the factor m
+  std::vector<double> rotation;     // for method given: w,x,y,z
   std::vector<double> translation;  // given: m
-  std::map<std::string, std::string> joints;           // joint of this stream -> joint of the other
-  std::string root = "SpineBase", onto_root = "Hips";  // paper: joints that are put together
+  std::map<std::string, std::string> joints;           // joint of this stream -> joint of `onto`
+  std::string root = "SpineBase", onto_root = "Hips";  // for method paper: put onto each other
 
   KeyLines lines;
 };
@@ -77,7 +77,7 @@ struct SpaceOptions {
 struct AlignOptions {
   std::string reference;             // the stream whose stamps are the grid; empty: the first one
   double gap_ms = 0.0;               // longest gap to interpolate; 0: 3.1 nominal steps
-  std::string rotations = "spline";  // spline: twice continuously differentiable; slerp
+  std::string rotations = "spline";  // spline (twice continuously differentiable) or slerp
   bool store_double = false;         // the take contains doubles instead of floats
 };
 

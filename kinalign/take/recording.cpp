@@ -55,7 +55,8 @@ Result<void> read_side_by_side(const std::vector<ReadNext>& passes,
                                const std::function<Result<void>()>& go) {
   // The pass with the earliest stamp comes first. A pass that has ended is not inserted again. At
   // the beginning the passes have the order of their indices.
-  std::set<std::pair<std::int64_t, std::size_t>> reached;  // stamp, and index of its pass
+  // The newest stamp of each pass, and the index of the pass.
+  std::set<std::pair<std::int64_t, std::size_t>> reached;
   for (std::size_t i = 0; i < passes.size(); ++i) reached.emplace(INT64_MIN, i);
   while (!reached.empty()) {
     const std::size_t i = reached.extract(reached.begin()).value().second;

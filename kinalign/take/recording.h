@@ -71,7 +71,7 @@ struct TakeMark {
 
 /// A file that contains several streams, such as a recording.
 struct SharedFile {
-  Findings findings;            // about the file as a whole
+  Findings findings;            // findings about the whole file
   std::vector<TakeMark> marks;  // in the order of arrival
 };
 

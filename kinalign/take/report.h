@@ -20,7 +20,7 @@ namespace kinalign {
 struct JointResidual {
   std::string joint, onto;
   std::uint64_t rows = 0;
-  double before_m = 0.0;  // before the stream was moved
+  double before_m = 0.0;  // distance before the stream was moved
   double after_m = 0.0;
 };
 
@@ -31,7 +31,7 @@ struct SpaceReport {
   RigidTransform transform;  // method "paper": only the rotation; frames differ in translation
   double magnification = 1.0;
   double before_m = 0.0, after_m = 0.0;  // rms over all paired joints
-  std::vector<JointResidual> joints;     // worst first
+  std::vector<JointResidual> joints;     // the joint with the largest distance first
 };
 
 /// The quality of one stream. Several streams of nodes may share the name of a group; `nodes`
@@ -45,9 +45,9 @@ struct StreamReport {
   std::int64_t gap_ns = 0;       // longer times without samples are gaps
   std::uint64_t held_back = 0;   // samples dropped because they were delayed: the next sample
                                  // followed too soon
-  Arrivals arrivals;             // delays of stamps
-  std::uint64_t gaps = 0;        // within the take
-  std::int64_t gap_time_ns = 0;  // sum of their lengths
+  Arrivals arrivals;             // delays of the stream's stamps
+  std::uint64_t gaps = 0;        // number of gaps within the take
+  std::int64_t gap_time_ns = 0;  // sum of the gaps' lengths
   std::uint64_t samples = 0;     // rows x joints (or nodes) of the take; rows for a skeleton
   std::uint64_t invalid = 0;     // number of invalid samples
   std::uint64_t empty_rows = 0;  // rows of the take without a valid sample of this stream

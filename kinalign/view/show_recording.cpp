@@ -127,7 +127,7 @@ class StreamShowing final : public Showing {
   std::size_t row_ = 0;
   bool ended_ = false;
   std::optional<Time> next_;
-  ShownPace pace_;  // for transforms
+  ShownPace pace_;  // selects the frames that are written as transforms
 };
 
 /// Adds the stream's channels and reads its first block.

@@ -31,7 +31,7 @@ class ShownPace {
   // less than half a step, so every second frame of a 60 Hz device is shown.
   static constexpr Duration early = std::chrono::milliseconds(4);
 
-  // Absent before the first frame.
+  // The member is absent before the first frame.
   std::optional<Time> due_;  // time of the next frame; increases by at least one step
 };
 

@@ -33,8 +33,8 @@ McapSchema imu_schema();         // kinalign.ImuSample
 /// space of its parent.
 std::string transforms_json(const std::string& stream, const Skeleton& skeleton,
                             const ClipFrames& frames, std::size_t t, const ShownTime& time);
-/// The same for points, which have no rotation. A Kinect's point is in the space of the nearest
-/// joint towards the root that is not missing. Other points are in the space `lab`.
+/// Returns the transforms of points, which have no rotation. A Kinect's point is in the space of
+/// the nearest joint towards the root that is not missing. Other points are in the space `lab`.
 std::string transforms_json(const std::string& stream, const std::vector<std::string>& joints,
                             const PointFrames& frames, std::size_t t, const ShownTime& time);
 

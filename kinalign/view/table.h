@@ -18,8 +18,8 @@ inline Cell cell_of(const std::optional<double>& value) { return value ? Cell(*v
 
 /// A column. `key` never changes, because other programs read it; `title` may change.
 struct TableColumn {
-  std::string key;    // in CSV and JSON: "height_cm"
-  std::string title;  // for readers: "height, cm"
+  std::string key;    // name in CSV and JSON: "height_cm"
+  std::string title;  // title for readers: "height, cm"
   int decimals = 0;   // for readers; CSV and JSON have all digits
 };
 
@@ -28,7 +28,7 @@ struct TableColumn {
 struct Table {
   std::string caption;
   std::vector<TableColumn> columns;
-  std::vector<std::vector<Cell>> rows;  // each as wide as the columns
+  std::vector<std::vector<Cell>> rows;  // a row has a cell for each column
   bool has_sum = false;                 // the last row contains sums of the other rows
 };
 

@@ -64,7 +64,7 @@ HostTime arrival(std::optional<Time> stamp, const ClockBracket& behind, Time ste
 struct HostClockEvent {
   enum class Kind : std::uint8_t {
     suspended,    // the host was suspended; earlier bounds on node clocks are invalid
-    backwards,    // the raw clock went back; the axis continues, and node clocks are estimated anew
+    backwards,    // the raw clock went back; the axis continues, and node estimates begin again
     wall_stepped  // the wall clock was stepped; only reported, because no stamp depends on it
   };
   Kind kind{};
@@ -94,7 +94,7 @@ class HostAxis {
   /// Events since the previous call. Events beyond the limit are counted in missed_events.
   std::vector<HostClockEvent> take_events() { return events_.take(); }
   std::uint64_t missed_events() const { return events_.missed(); }
-  /// Increases whenever the estimates of the node clocks must begin anew.
+  /// Increases whenever the estimates of the node clocks must begin again.
   std::uint32_t epoch() const { return epoch_; }
 
  private:

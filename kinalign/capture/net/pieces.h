@@ -47,7 +47,7 @@ class Senders {
     HostTime last_arrival{};
     // number of this sender among all senders that the port has had
     std::uint64_t serial = 0;
-    std::uint64_t times = 0;  // messages received
+    std::uint64_t times = 0;  // number of received messages
     Datagram asked{};         // the newest datagram without its bytes, needed for answers; UDP only
   };
   /// Returns the sender's number; a new sender gets one. Absent if all numbers belong to active
@@ -55,7 +55,7 @@ class Senders {
   /// the same host, the one silent longest. New senders of other hosts then share the serial number
   /// most_serials + 1.
   std::optional<std::size_t> number(const HostAddress& host, std::uint16_t port, HostTime now);
-  /// The same for a TCP connection. A new connection is a new sender, even from the same port.
+  /// Does the same for a TCP connection. A new connection is a new sender, even from the same port.
   /// `known` is the connection's number and serial number. It is set when the first bytes arrive.
   struct Known {
     std::size_t number = 0;
@@ -137,7 +137,7 @@ class TcpPieces {
     HostTime last_arrival{};  // last arrival; before data arrived, begin of the connection
     bool connected = false;
     NodeAddress address{};                   // address of the device
-    std::optional<Senders::Known> sender{};  // absent before the first bytes
+    std::optional<Senders::Known> sender{};  // absent until bytes arrive
   };
   TcpPieces(std::string address, std::uint16_t port, Handle listener);
   void accept(HostTime now);

@@ -38,7 +38,7 @@ class RateLimit {
     // the time when the bucket is full again; in the past: it is full
     HostTime full_at{HostTime::min()};
   };
-  struct alignas(64) Set {  // one cache line
+  struct alignas(64) Set {  // has the size of one cache line
     std::array<Entry, ways> entries;
   };
   static Entry& entry_of(Set& set, std::uint64_t hash);

@@ -39,7 +39,7 @@ struct NodeEvent {
 };
 inline constexpr std::size_t node_event_kinds = 11;
 
-/// The same word as in --json: "newer_version".
+/// Returns the word for the kind in --json output, such as "newer_version".
 inline const char* name_of(NodeEvent::Kind kind) {
   static constexpr std::array<const char*, node_event_kinds> names{
       "joined", "started",  "restarted",     "twins",    "renamed",  "moved",

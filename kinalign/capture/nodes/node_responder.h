@@ -39,7 +39,7 @@ struct NodeMessage {
   NodeVerdict verdict = NodeVerdict::refused;
   // claimed id; proved by the MAC if a key is used and the datagram is not refused
   std::uint32_t node_id = 0;
-  std::size_t stream = 0;   // only if accepted
+  std::size_t stream = 0;   // set only if the datagram is accepted
   std::uint64_t frame = 0;  // unwrapped number of the datagram; gaps show lost datagrams
   bool late = false;        // a frame or request with a higher number arrived earlier
   std::optional<Exchange> exchange;

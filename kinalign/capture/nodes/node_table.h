@@ -22,7 +22,7 @@ struct NodeStream {
   std::size_t session = 0;  // the present session
   // Sessions of this stream, including the present one.
   std::uint64_t sessions = 0;
-  std::optional<std::uint16_t> battery_mv;  // as last sent by the node
+  std::optional<std::uint16_t> battery_mv;  // newest value sent by the node
   bool locked = false;  // the flag sent in its replies, see NodeResponder::set_locked
   bool silent = false;  // the event `left` was reported
 };

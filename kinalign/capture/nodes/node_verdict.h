@@ -36,7 +36,7 @@ enum class EchoVerdict : std::uint8_t {
 };
 inline constexpr std::size_t echo_verdicts = 6;
 
-/// The same word as in --json: "wrong_counter".
+/// Returns the word for the verdict in --json output, such as "wrong_counter".
 inline const char* name_of(NodeVerdict verdict) {
   static constexpr std::array<const char*, node_verdicts> names{
       "accepted", "held",    "duplicate",     "replayed",       "earlier_life",
@@ -53,7 +53,7 @@ inline const char* name_of(EchoVerdict verdict) {
 /// Counts since the port was opened.
 struct NodeCounts {
   CountsBy<NodeVerdict, node_verdicts> verdicts;  // each datagram is counted once
-  CountsBy<NodeRefusal, node_refusals> refusals;  // refused datagrams
+  CountsBy<NodeRefusal, node_refusals> refusals;  // refused datagrams by cause
   CountsBy<EchoVerdict, echo_verdicts> echoes;    // echoes in frames of known sessions
   std::uint64_t answers = 0;
   std::uint64_t wrong_copies = 0;   // confirms whose T2 or T3 differs from the value that was sent

@@ -28,7 +28,7 @@ constexpr std::size_t chrony_tracking_size = 104;
 
 std::array<std::uint8_t, chrony_tracking_size> chrony_tracking_request(std::uint32_t sequence);
 
-/// Absent if the datagram is not an answer to the request with the number `sequence`.
+/// The result is absent if the datagram is not an answer to the request with the number `sequence`.
 std::optional<ChronyTracking> decode_chrony_tracking(std::span<const std::uint8_t> datagram,
                                                      std::uint32_t sequence);
 

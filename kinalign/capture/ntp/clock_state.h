@@ -20,7 +20,7 @@ struct KernelClock {
 /// Returns whether a program keeps the clock synchronised.
 bool is_synchronised(const std::optional<KernelClock>& kernel);
 
-/// Absent if the kernel does not answer.
+/// Reads adjtimex(2). The result is absent if the kernel does not answer.
 std::optional<KernelClock> read_kernel_clock();
 
 /// log2 of the seconds that one reading of CLOCK_REALTIME takes (RFC 5905 section 7.3): -25 for 15

@@ -40,7 +40,7 @@ NtpPacket ntp_kiss_rate(const NtpPacket& request, Time received, Time transmit,
   // log2 of seconds: 2 s, the interval that the rate limit allows (rate_limit.h)
   constexpr std::int8_t least_poll = 1;
   NtpPacket kiss = ntp_answer(request, received, transmit, state);
-  // A kiss has stratum 0, and its code stands in the field of the reference.
+  // A kiss has stratum 0, and its code is in the field reference_id.
   kiss.leap = NtpLeap::unsynchronised;
   kiss.stratum = 0;
   kiss.reference_id = ntp_code("RATE");

@@ -34,7 +34,7 @@ enum class NtpOutcome : std::uint8_t {
 };
 constexpr std::size_t ntp_outcomes = 13;
 
-/// The same word as in --json: "wrong_version".
+/// Returns the word for the outcome in --json output, such as "wrong_version".
 std::string_view name_of(NtpOutcome outcome);
 
 /// Number of datagrams for each outcome.

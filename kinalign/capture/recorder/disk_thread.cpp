@@ -192,7 +192,7 @@ void DiskThread::work_on(std::unique_lock<std::mutex>& lock) {
 
 /// Finishes the file. `finished` and the result are published together.
 void DiskThread::work_on_end(std::unique_lock<std::mutex>& lock) {
-  due_.reset();  // finish() syncs itself
+  due_.reset();  // finish() includes a sync
   const bool last = giving_up_;
   const McapMetadata end = to_metadata(RecordingEnd{status_.dropped});
   lock.unlock();

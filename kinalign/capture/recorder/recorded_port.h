@@ -55,7 +55,7 @@ class RecordedPort {
     RecordedSource recorded;
     RawChannel raw;
     StreamWatch watch;
-    std::uint64_t serial = 0;  // see Senders
+    std::uint64_t serial = 0;  // serial number, see Senders
     NodeAddress address;       // address of the newest piece
     // channel of the clock exchanges; absent before the first ping
     std::optional<std::uint16_t> exchanges{};

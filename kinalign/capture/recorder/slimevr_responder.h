@@ -62,7 +62,7 @@ struct SlimeDevice {
   NodeAddress address;
   std::optional<float> battery_volts;
   HostTime last_arrival = HostTime::min();
-  SequenceCount numbers{64};  // since the newest handshake
+  SequenceCount numbers{64};  // numbers received since the newest handshake
   std::uint64_t credit = 0;   // bytes that may still be sent to this device
   HostTime next_heartbeat{}, next_ping{};
 };

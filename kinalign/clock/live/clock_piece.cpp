@@ -237,7 +237,7 @@ ClockPiece ClockPiece::next_after_slip(const Assumptions& assumed, const SlopeBe
 Duration ClockPiece::greatest_step_back() const {
   if (end_ == End::none) return Duration{0};
   const auto violators = violators_.pending();
-  // The counter stepped ahead.
+  // In this case the counter stepped ahead, not back.
   if (!violators.empty() && violators[0].bound.side == Side::above) return Duration{0};
   const auto range = certificate_.at(journal_.newest(0).s);
   const double width = range ? range->high - range->low : 2.0 * estimate_.least_round_trip();

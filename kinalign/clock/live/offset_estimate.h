@@ -29,7 +29,7 @@ class OffsetEstimate {
   /// Call nearly in the order of s.
   void add(const Bound& bound);
 
-  /// Absent until there is a bound of each kind.
+  /// The offset at t. It is absent until there is a bound of each kind.
   std::optional<Middle> at(double t);
   SlopeBelief slope() const { return route_.belief(); }
   /// Round trip of the shortest route so far, s.
@@ -41,7 +41,7 @@ class OffsetEstimate {
   /// The moment at which the present route follows the earlier routes.
   struct Joint {
     double s = 0.0, x = 0.0, variance = 0.0;
-    double round_trip = 0.0, floor_deviation = 0.0;  // of the earlier route
+    double round_trip = 0.0, floor_deviation = 0.0;  // values of the earlier route
     bool judged = false;  // judge_change() has looked for a step of the counter
   };
 
@@ -62,7 +62,7 @@ class OffsetEstimate {
   std::optional<double> since_;  // first bound of the route
   std::array<RecentBounds, 2> recent_;
   std::optional<Joint> joint_;
-  double least_round_trip_ = 0.0;  // over the earlier routes
+  double least_round_trip_ = 0.0;  // the least of the earlier routes
   std::optional<RouteChange> last_change_;
   std::uint32_t changes_ = 0;
 };

@@ -17,11 +17,11 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t grid = 24;  // number of slopes in the average
+constexpr std::size_t grid = 24;  // number of slopes that are averaged
 constexpr double reach = 5.0;     // range of these slopes on each side, in standard deviations
 constexpr int most_rounds = 24;
-constexpr double least_deviation = 1e-15;  // slope: 1 us in thirty years
-constexpr double far_beyond = 1e4;         // nats; sharp floors may give hundreds
+constexpr double least_deviation = 1e-15;  // a slope of 1 us in thirty years
+constexpr double far_beyond = 1e4;         // nats; evidence from sharp floors may reach hundreds
 
 /// The slopes of the grid and the results for each slope; arrays [grid].
 struct Slopes {

@@ -19,10 +19,10 @@ struct ClocklessExchange {
   std::uint64_t frame = 0;  // frame number since the node's start plus 2^32, including lost frames
   HostTime t2{}, t3{};
   std::optional<HostTime> t6;  // absent: the answer or its confirmation was lost
-  BootKey boot = 0;            // the node's boot
+  BootKey boot = 0;            // boot of the node
 };
 
-/// Absent if there is no t6.
+/// The delay d. It is absent if there is no t6.
 std::optional<Duration> one_way_delay(const ClocklessExchange& exchange);
 
 /// The least delay of all exchanges. Absent if no exchange was confirmed.

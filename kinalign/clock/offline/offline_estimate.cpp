@@ -16,7 +16,7 @@ constexpr double bin_s = 10.0;
 constexpr std::size_t lows_each = 12;
 constexpr std::size_t bins_around = 5;  // windows on each side that give the density at a floor
 constexpr int first_looks = 4;  // each pass improves the lines with which the next pass begins
-constexpr std::size_t least_bounds = 20;  // bounds of each kind that a route of its own needs
+constexpr std::size_t least_bounds = 20;  // bounds of each kind that a separate route needs
 constexpr double same_crystal = 1e-6;     // possible difference between the slopes of two routes
 constexpr double least_variance = 1e-14;
 

@@ -55,7 +55,7 @@ struct KinectIds {
 /// One frame of the sensor.
 struct KinectTick {
   std::int64_t number = 0;  // number of the frame; dropped frames are counted too
-  double seconds = 0.0;     // true time, s
+  double seconds = 0.0;     // true time of the frame, s
   std::int64_t device = 0;  // the sensor's own clock, 100 ns
 };
 

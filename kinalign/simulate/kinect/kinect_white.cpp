@@ -21,10 +21,10 @@ constexpr double most_white = 0.08;  // m
 // twitch_rate is per frame; twitch_at_rest is the share of that rate at rest.
 constexpr double twitch_rate = 0.0115, twitch_at_rest = 0.02;
 constexpr double twitch_sd = 0.025;  // m for each axis, times an exponential draw
-constexpr int longest_twitch = 4;    // number of frames
+constexpr int longest_twitch = 4;    // greatest number of frames of a twitch
 
 struct Twitch {
-  int left = 0;  // remaining frames
+  int left = 0;  // remaining frames of the twitch
   Vec3 offset = Vec3::Zero();
 };
 

@@ -134,7 +134,7 @@ void carry_down(const Counter& counter, std::uint64_t seed, const std::vector<st
     SimulatedFrame& frame = run.frames[arrival[j]];
     if (!arrivals[j].first || !counter.powered(*arrivals[j].first)) continue;
     const Counter::Reading reading = counter.at(*arrivals[j].first);
-    if (reading.boot_id != frame.boot_id) continue;  // a reply to an earlier boot
+    if (reading.boot_id != frame.boot_id) continue;  // the reply was sent to an earlier boot
     frame.reply_arrival = arrivals[j].first;
     frame.n_rx_us = microseconds(reading.seconds);
   }

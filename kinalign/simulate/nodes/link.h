@@ -12,8 +12,8 @@
 namespace kinalign {
 
 enum class Link : std::uint8_t {
-  wired,        // A: a switch
-  quiet,        // B: Wi-Fi without modem sleep
+  wired,        // A: cable and switch
+  quiet,        // B: Wi-Fi, little traffic, without modem sleep
   paper,        // C: delay of 33 +- 13 ms, as measured in the HFUT-MMD paper
   modem_sleep,  // D: packets to the node wait for a beacon
   congested,    // E: good and bad states, different in both directions

@@ -19,7 +19,7 @@ struct Worn {
   std::string_view node, joint, end;  // the bone goes from `joint` to `end`; `end` empty: upwards
   double from_cm, to_cm;              // along the bone, for a shank of 41.87 cm
   bool from_end;                      // measured from the end of the bone
-  Vec3 outward;                       // in the rest pose
+  Vec3 outward;                       // away from the body, in the rest pose
   double outward_cm;                  // distance from the bone's axis
 };
 

@@ -19,7 +19,7 @@ class PacketFates {
  public:
   using Delay = std::chrono::nanoseconds;
   struct Fate {
-    std::optional<Delay> first, duplicate;  // absent: lost
+    std::optional<Delay> first, duplicate;  // absent: the packet is lost
   };
 
   PacketFates(const LinkOptions& options, std::uint64_t seed, Way way, double rate_hz) {

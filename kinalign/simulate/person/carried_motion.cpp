@@ -53,7 +53,7 @@ constexpr std::array<CarriedJoint, 21> carried_joints{
 /// The joint of the source for each row of carried_joints.
 using SourceJoints = std::array<std::size_t, carried_joints.size()>;
 
-// Absent if one of the names of that kind is missing.
+// Finds the joints by the names of one kind. The result is absent if a name is missing.
 std::optional<SourceJoints> joints_of_kind(const Skeleton& skeleton, std::size_t kind) {
   SourceJoints out{};
   for (std::size_t i = 0; i < out.size(); ++i) {

@@ -19,7 +19,7 @@ struct FootShape {
 struct FootState {
   Vec3 ankle = Vec3::Zero(), toes = Vec3::Zero();  // m
   double yaw = 0.0;                                // rad, not wrapped
-  Quat rotation = Quat::Identity();                // global rotation
+  Quat rotation = Quat::Identity();                // global rotation of the foot
   bool planted = true;                             // the toes are on the floor
 };
 

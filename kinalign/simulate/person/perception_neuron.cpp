@@ -15,7 +15,7 @@ namespace kinalign {
 namespace {
 
 constexpr double file_height_m = 1.75;
-constexpr double leg_cm = 1.59 + 2.0 * 41.87 + 7.69;  // from the hips to the sole
+constexpr double leg_cm = 1.59 + 2.0 * 41.87 + 7.69;  // distance from the hips to the sole
 constexpr double trunk_cm = 14.307 + 9.718 + 10.12 + 9.718 + 10.387 + 9.47 + 15.95;
 
 /// Factors for the lengths of the file.
@@ -35,7 +35,7 @@ Proportions proportions(double height_m, std::uint64_t person) {
   Proportions of;
   const double leg = near_one(0, 0.02);
   of.leg = scale * leg;
-  of.trunk = scale * (1.0 - (leg - 1.0) * leg_cm / trunk_cm);  // keeps the height
+  of.trunk = scale * (1.0 - (leg - 1.0) * leg_cm / trunk_cm);  // keeps the height of the person
   of.arm = scale * near_one(2, 0.025);
   of.width = scale * near_one(4, 0.03);
   of.foot = scale * near_one(6, 0.025);

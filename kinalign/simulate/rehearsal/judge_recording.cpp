@@ -262,7 +262,7 @@ Result<ValueJudgement> judge_node(const JudgedTake& judged, std::size_t g, std::
     if (rows.valid[i] != 0)
       after.add(off(judged.take.all.stamps[t], vec3(rows.angular_velocity, i)));
   }
-  // The same comparison for the stream without alignment.
+  // The stream without alignment is compared in the same way.
   const RecordedStream* stream = stream_of(judged, group.name, name);
   if (stream == nullptr) return Failure(Error{"", 0, "the recording's node " + name, "none"});
   const TrueTimes times = KA_TRY(moved_times(*stream, judged));

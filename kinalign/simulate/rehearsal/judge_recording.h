@@ -49,7 +49,7 @@ struct JudgedTake {
   const Take& take;
   const Recording& recording;
   const TrueRecording& truth;
-  const Motion& motion;  // motion of the truth
+  const Motion& motion;  // the true motion
   Duration shift{};
 };
 

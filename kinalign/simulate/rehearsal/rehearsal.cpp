@@ -142,7 +142,7 @@ Result<RigidTransform> camera_before(const Motion& motion, std::uint64_t seed) {
   std::vector<double> joints(3 * kinect_joint_count);
   Vec3 sum = Vec3::Zero();
   int count = 0;
-  for (; count <= motion.length_s; ++count) {  // for each second
+  for (; count <= motion.length_s; ++count) {  // the position is taken once a second
     joints_of(count, joints);
     sum += vec3(joints, spine_base);
   }
@@ -249,7 +249,7 @@ ImuStream received_node(const SimulatedNode& node, Link link, Time zero) {
 // Samples are sorted by arrival, in the order in which a host would write them.
 ArrivedNode arrived_node(const SimulatedNode& node, Link link, Time zero) {
   const auto arrivals = transmit({.link = link}, node.seed, Way::up, node.truth.times);
-  std::vector<std::pair<double, std::size_t>> arrived;  // arrival and index
+  std::vector<std::pair<double, std::size_t>> arrived;  // arrival and index of each sample
   for (std::size_t i = 0; i < arrivals.size(); ++i) {
     if (arrivals[i].first) arrived.emplace_back(*arrivals[i].first, i);
   }

@@ -106,7 +106,7 @@ Vec3 widest_axis(const std::vector<Drawn>& bodies) {
   // The direction of the largest variance: half the angle of the covariance (principal axis).
   const double angle =
       0.5 * std::atan2(2.0 * (xz - x * z / n), (xx - x * x / n) - (zz - z * z / n));
-  return {std::cos(angle), 0.0, std::sin(angle)};  // within 90 degrees of +x
+  return {std::cos(angle), 0.0, std::sin(angle)};  // at most 90 degrees away from +x
 }
 
 /// Converts metres to units of the picture. All bodies have the same conversion, so their relative

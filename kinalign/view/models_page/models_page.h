@@ -28,7 +28,7 @@ struct StickFigure {
 /// One picture: several figures in one drawing, and a line of text below.
 struct PosePicture {
   std::vector<StickFigure> figures;  // empty: no picture
-  std::string below;                 // "4.2 cm"
+  std::string below;                 // such as "4.2 cm"
 };
 
 /// Pictures in rows and columns, all with the same scale and viewing direction. Each row has as
@@ -38,7 +38,7 @@ struct PosePictures {
   std::vector<std::pair<std::string, std::string>> columns;  // title; take and time
   /// Name of the row, and a picture for each column.
   std::vector<std::pair<std::string, std::vector<PosePicture>>> rows;
-  std::vector<Table> tables;  // below the pictures
+  std::vector<Table> tables;  // tables below the pictures
   std::string absent;         // which parts are missing and why; otherwise empty
 };
 
@@ -77,14 +77,14 @@ struct SideBySide {
 struct ModelsPage {
   std::string name, software;
   std::string headline;                                      // the result in one sentence
-  std::vector<std::string> facts;                            // "5 takes of 3 people"
+  std::vector<std::string> facts;                            // such as "5 takes of 3 people"
   std::vector<std::pair<std::string, std::string>> numbers;  // number ("3.4 cm") and its meaning
-  Table marks;                                               // table 9
+  Table marks;                                               // table 9 of the paper
   std::string marks_note;
-  PosePictures poses;  // table 8
+  PosePictures poses;  // table 8 of the paper
   ErrorPlot errors;
   SideBySide motion;
-  std::vector<PosePictures> figures;  // figures 8, 9 and 10
+  std::vector<PosePictures> figures;  // figures 8 to 10 of the paper
   std::string command;                // command that makes the page again
 };
 

@@ -17,7 +17,7 @@ namespace kinalign {
 /// ways. The rows must outlive the view.
 class JointRows {
  public:
-  /// Absent if the rows are those of nodes.
+  /// Makes the view. The result is absent for rows of nodes.
   static std::optional<JointRows> of(const std::variant<ClipRows, PointRows, ImuRows>& rows,
                                      std::size_t joints);
   Tracking state(std::size_t row, std::size_t joint) const;
@@ -28,12 +28,12 @@ class JointRows {
 
  private:
   const std::vector<double>* positions_ = nullptr;
-  const std::vector<Tracking>* states_ = nullptr;     // only for points
+  const std::vector<Tracking>* states_ = nullptr;     // set only for points
   const std::vector<std::uint8_t>* valid_ = nullptr;  // points [n,J]; skeleton [n] or empty
   std::size_t joints_ = 0;
 };
 
-/// Appends x, y and z.
+/// Appends the x, y and z of a vector.
 inline void put_vector(std::vector<float>& to, const Vec3& v) {
   for (const double x : {v.x(), v.y(), v.z()}) to.push_back(static_cast<float>(x));
 }
@@ -68,7 +68,7 @@ class BodyFigures {
                 std::size_t row);
 
   std::size_t number_;      // index of the body
-  std::size_t joints_ = 0;  // without end sites
+  std::size_t joints_ = 0;  // number of joints, without end sites
   std::optional<Skeleton> skeleton_;
   std::vector<EndSite> ends_;
   GlobalPose pose_;

@@ -28,7 +28,7 @@ class LaneFigures {
   void add_distance(const SampleDistance& distance, std::size_t sample, std::size_t lane,
                     std::size_t bin);
 
-  std::size_t joints_ = 0;  // joints of a body
+  std::size_t joints_ = 0;  // number of joints of the body
   std::vector<PageLane> lanes_;
   std::vector<std::vector<Counts>> counts_;  // [lanes][bins]
 };

@@ -22,7 +22,7 @@ constexpr double most_lag_s = 0.25;
 // With fewer rows, the fitted rotations could explain almost any difference.
 constexpr std::size_t fewest_rows = 20;  // least number of rows for a comparison
 
-// ---- by name
+// ---- bones by name
 
 /// Words in a node's name, and the usual names of its joints. "*" means the side.
 struct Wear {
@@ -101,7 +101,7 @@ std::optional<std::size_t> joint_called(std::span<const std::string_view> patter
   return std::nullopt;
 }
 
-// ---- fits
+// ---- fits of rotations and curves
 
 /// Returns the rotation R that maximises the sum of to . R from. `cross` is the sum of to * from^T
 /// (Wahba's problem; Markley 1988).

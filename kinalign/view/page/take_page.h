@@ -87,8 +87,8 @@ struct PageFloor {
   struct Counts {
     std::uint64_t tracked = 0, inferred = 0;
   };
-  std::array<Counts, zone_count> zones{};  // rows x joints
-  std::uint64_t missing = 0;               // missing joints
+  std::array<Counts, zone_count> zones{};  // counts of rows x joints
+  std::uint64_t missing = 0;               // number of missing joints
 };
 
 /// The length of a bone over time, for figure 10. The bones of a skeleton are constant by
@@ -109,7 +109,7 @@ struct JointStates {
 /// A stream's samples over time, in equal bins of the take. With bins, the size of a lane does not
 /// depend on the take's length.
 struct PageLane {
-  std::string stream, part;  // "imu", "waist"
+  std::string stream, part;  // such as "imu" and "waist"
   PageColour colour = PageColour::mocap;
   bool resampled = false;
   bool interval_known = false;
@@ -121,15 +121,15 @@ struct PageLane {
 /// A node and the bone on which it is worn, for figures 11 to 13 and the table of nodes. Signals
 /// are in the node's axes as it was mounted.
 struct NodeFigures {
-  std::string node, joint;    // "wrist_left", "LeftForeArm"
+  std::string node, joint;    // such as "wrist_left" and "LeftForeArm"
   bool joint_by_name = true;  // false: the joint whose rotation is most similar to the node's
   std::string more_like;      // joint of another node whose rotation is clearly more similar
-  std::uint64_t rows = 0;     // compared rows
+  std::uint64_t rows = 0;     // number of compared rows
   bool has_rate = false, has_acceleration = false, has_orientation = false;
   bool has_gravity = false;
   double rate_rms = 0.0;          // rad/s, rms difference after the best constant rotation
   double rate_correlation = 0.0;  // correlation of the magnitudes
-  double acceleration_rms = 0.0;  // m/s2, in the same way
+  double acceleration_rms = 0.0;  // m/s2, rms difference in the same way
   double acceleration_correlation = 0.0;
   double orientation_rms = 0.0;  // rad, after the best constant rotations of world and sensor
   std::optional<double> lag_s;   // delay of the node relative to the mocap, from the rates

@@ -102,7 +102,7 @@ export function placeBetween(body, row, joint, share) {
   return here.map((v, k) => v + share * (next[k] - v));
 }
 
-/// 0 missing, 1 inferred, 2 tracked.
+/// Returns the state of a joint: 0 missing, 1 inferred, 2 tracked.
 export function stateOf(body, row, joint) {
   return body.state[row * body.joints + joint];
 }
