@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Counts valid and invalid samples in the final rows of a take. At that stage, rows without a
-// required root joint or root node are already invalid.
+// required root joint or root node are already invalid. The reference is the stream whose stamps
+// are the grid.
 #pragma once
 
 #include "kinalign/align/nodes.h"

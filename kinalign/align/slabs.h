@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the rows of a take in blocks ("slabs"). The reference is copied, and every other stream is
-// resampled to the reference's stamps.
+// Makes the rows of a take in blocks ("slabs"). The reference (the stream whose stamps are the
+// grid) is copied, and every other stream is resampled to the reference's stamps.
 #pragma once
 
 #include "kinalign/align/plan.h"

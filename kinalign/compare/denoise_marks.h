@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The error measures ("marks") of a cleaned skeleton. They use the joints that Kinect and truth
-// have in common: 18 for UI-PRMD and 16 for a motion capture suit, whose skeleton has no toe tips.
+// The error measures ("marks") of the answer of a method, which is a cleaned Kinect skeleton. They
+// use the joints that Kinect and truth have in common: 18 for UI-PRMD and 16 for a motion capture
+// suit, whose skeleton has no toe tips.
 #pragma once
 
 #include "kinalign/evaluate/feet.h"
@@ -44,9 +45,9 @@ enum class MarkedIn : std::uint8_t {
   own_root,  // each skeleton's own root and heading, as in BRA's published figures (own_root())
 };
 
-/// Computes the error measures of many answers of one layout. One object is made for all pairs of a
-/// data set and does not change later. It stores the limb lengths of every person and action,
-/// because a part of a take is judged by the lengths of the whole take.
+/// Computes the error measures of many answers of one layout. One object is made for all pairs
+/// (Kinect input and truth) of a data set and does not change later. It stores the limb lengths of
+/// every person and action, because a part of a take is judged by the lengths of the whole take.
 class DenoiseMarker {
  public:
   /// Fails if the outputs have fewer than 12 of the 18 shared joints, because a pose can't be

@@ -42,8 +42,8 @@ class ArrivalLines {
   /// Returns the stamp of the first row that a row after `t` may still show to be delayed.
   std::optional<std::int64_t> open_since(std::int64_t t) const;
 
-  /// The counts of all lines. For the reference, they include rows that were accepted although
-  /// late.
+  /// The counts of all lines. For the reference (the stream whose stamps are the grid), `near` is
+  /// counted too: late rows that were not dropped.
   Arrivals result() const;
 
  private:

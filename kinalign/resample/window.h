@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The samples of a stream around the rows that are being made. A stream is read block by block.
-// Three kinds of samples are dropped: samples whose time does not rise (motion/stamps.h), samples
-// that were stamped late (resample/arrival_lines.h), and samples that no later row needs. Rows and
-// counts do not depend on the size of the blocks.
+// The samples of a stream around the rows that are being made. A stream is read block by block. The
+// stream may also be the reference, whose stamps are the grid. Three kinds of samples are dropped:
+// samples whose time does not rise (motion/stamps.h), samples that were stamped late
+// (resample/arrival_lines.h), and samples that no later row needs. Rows and counts do not depend on
+// the size of the blocks.
 #pragma once
 
 #include "kinalign/motion/stamps.h"

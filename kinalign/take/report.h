@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The result and the quality of an alignment as data. Pages and messages are made from it.
+// The result and the quality of an alignment as data. The reference is the stream whose stamps are
+// the grid. Pages and messages are made from it.
 #pragma once
 
 #include "kinalign/core/error.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The last 256 answers sent to one node. An echo or a confirm is valid only if it names one of
-// these answers and its nonce. The times come from this table, not from the copies that the node
+// The last 256 answers sent to one node. A frame of a node names an answer in its echo; a node
+// without a clock names an answer in a confirm. An echo or a confirm is valid only if it names one
+// of these answers and its nonce. The times come from this table, not from the copies that the node
 // sends.
 #pragma once
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The verdict on a datagram of the nodes' port, and the verdict on the echo in a datagram. Each
-// verdict is counted separately.
+// verdict is counted separately. An echo is the part of a frame that names an answer of the host. A
+// confirm is a datagram with which a node without a clock names an answer.
 #pragma once
 
 #include "kinalign/capture/net/counts_by.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stores the newest bounds of a piece in their order of arrival. After a step of the counter, they
-// tell from which time on stamps are doubtful.
+// Stores the newest bounds of a piece (clock_piece.h) in their order of arrival. After a step of
+// the counter, they tell from which time on stamps are doubtful.
 #pragma once
 
 #include "kinalign/clock/bound.h"

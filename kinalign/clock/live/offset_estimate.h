@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The likeliest offset between two clocks, also if the packets change their route. Packets don't
 // show how a change of route affects the delay in each direction. The true offset x(t) is
-// continuous, so it is carried over from the route with the shortest round trip.
+// continuous, so it is carried over from the route with the shortest round trip. The floor of a
+// direction is the least delay on a route (docs/clock.md).
 #pragma once
 
 #include "kinalign/clock/live/recent_bounds.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stores the bounds of one direction over the last seconds and finds out whether the floor has
-// moved.
+// moved. The floor is the least delay of the direction (docs/clock.md).
 #pragma once
 
 #include "kinalign/clock/live/floor.h"

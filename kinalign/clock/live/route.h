@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The likeliest offset between two clocks while all packets take the same route.
+// The likeliest offset between two clocks while all packets take the same route. The floor of a
+// direction is the least delay on the route (docs/clock.md).
 #pragma once
 
 #include "kinalign/clock/live/floor.h"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stores violators: crossings that contradict the certificate. Either the packet's stamp is wrong,
-// or the counter stepped. A later crossing that contradicts the violator shows that the violator is
-// wrong. If none does so for some time, the violator is taken as right.
+// Stores violators: crossings (packets in one direction) that contradict the certificate. Either
+// the packet's stamp is wrong, or the counter stepped. A later crossing that contradicts the
+// violator shows that the violator is wrong. If none does so for some time, the violator is taken
+// as right.
 #pragma once
 
 #include "kinalign/clock/bound.h"

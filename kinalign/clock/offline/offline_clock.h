@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clock of one node over a whole recording. It repeats the live clock's computation with all
-// later exchanges.
+// The clock of one node over a whole recording. It repeats the computation of the clock during
+// recording (live_clock.h) with all later exchanges.
 #pragma once
 
 #include "kinalign/clock/host_from_node.h"

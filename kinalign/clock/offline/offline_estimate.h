@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The likeliest offset at any time of a piece. Each route is fitted to all its bounds. The routes
-// are joined, because the offset is continuous.
+// are joined, because the offset is continuous. A piece is a stretch of time in which one model of
+// the clock is valid; a route is the path of the packets (docs/clock.md).
 #pragma once
 
 #include "kinalign/clock/bound.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // First step of the offline clock. Passes all exchanges of a recording to the live clock. Finds the
-// beginnings of pieces, the doubtful stretches and the packets to ignore.
+// beginnings of pieces (stretches in which one model of the clock is valid), the doubtful stretches
+// and the packets to ignore.
 #pragma once
 
 #include "kinalign/clock/live/live_clock.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 4 of a seed has these lanes: 0 the variation of sending times, 1 the host's turnaround, 2
-// the node's. Stream 5 gives the boot ids.
+// Random numbers (random.h): stream 4 of a seed has these lanes: 0 the variation of sending times,
+// 1 the host's turnaround, 2 the node's. Stream 5 gives the boot ids.
 #include "kinalign/simulate/nodes/exchanges.h"
 
 #include "kinalign/simulate/random.h"

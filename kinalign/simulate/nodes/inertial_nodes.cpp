@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 115 of a node's seed has these lanes: 0 the phase of the timer (number 0), 1 the delay of
-// reading after each tick, by tick. The pass computes the pose of the body at every chip step. The
-// last five poses give the true reading at the middle pose.
+// Random numbers (random.h): stream 115 of a node's seed has these lanes: 0 the phase of the timer
+// (number 0), 1 the delay of reading after each tick, by tick. The pass computes the pose of the
+// body at every chip step. The last five poses give the true reading at the middle pose.
 #include "kinalign/simulate/nodes/inertial_nodes.h"
 
 #include <cmath>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams of a chip's seed: 110 and 111 are the noise of gyroscope and accelerometer (lanes 0, 2,
-// 4), 112 the walks (lanes 0 to 10). 113 is scale, misalignment and zeros: number 0 for the
-// gyroscope, 1 for the accelerometer; lanes 0 to 8 the matrix, 9 to 11 the zeros.
+// Random numbers (random.h): streams of a chip's seed: 110 and 111 are the noise of gyroscope and
+// accelerometer (lanes 0, 2, 4), 112 the walks (lanes 0 to 10). 113 is scale, misalignment and
+// zeros: number 0 for the gyroscope, 1 for the accelerometer; lanes 0 to 8 the matrix, 9 to 11 the
+// zeros.
 #include "kinalign/simulate/nodes/inertial_sensor.h"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams of a seed: 3 the properties of the link, 10 to 12 delays, 20 and 21 good and bad states,
-// 30 changes of route, 40 to 42 reordering and duplicates, 50 bursts, 60 to 62 losses of faults.
+// Random numbers (random.h): streams of a seed: 3 the properties of the link, 10 to 12 delays, 20
+// and 21 good and bad states, 30 changes of route, 40 to 42 reordering and duplicates, 50 bursts,
+// 60 to 62 losses of faults.
 #include "kinalign/simulate/nodes/link.h"
 
 #include "kinalign/simulate/random.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 114 of a seed, by the number of the node, has these lanes: 0 the position along the bone,
-// 1 to 3 the displacement, 4 to 6 the axis and 8 the angle of the rotation. Lengths are in cm for a
-// person with a shank of 41.87 cm.
+// Random numbers (random.h): stream 114 of a seed, by the number of the node, has these lanes: 0
+// the position along the bone, 1 to 3 the displacement, 4 to 6 the axis and 8 the angle of the
+// rotation. Lengths are in cm for a person with a shank of 41.87 cm.
 #include "kinalign/motion/index_of.h"
 #include "kinalign/motion/rotation.h"
 #include "kinalign/simulate/nodes/inertial_nodes.h"

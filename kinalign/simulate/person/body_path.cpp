@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A point walks from goal to goal with limited speed, acceleration and rate of turning. Its
-// positions every 0.2 s are the control points of the path. Stream 103 of a seed, by the number of
-// the goal in the whole motion, has these lanes: 0 direction, 1 distance, 2 angle of the turn.
+// positions every 0.2 s are the control points of the path. Random numbers (random.h): stream 103
+// of a seed, by the number of the goal in the whole motion, has these lanes: 0 direction, 1
+// distance, 2 angle of the turn.
 #include "kinalign/simulate/person/body_path.h"
 
 #include "kinalign/simulate/random.h"

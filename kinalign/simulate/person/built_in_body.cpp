@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 104 of a seed gives frequencies and phases of sway, breath and glances, by their number.
-// Lanes 0 to 2 of number 10 give the person's style of holding feet and arms. These sizes are
-// estimates: sway (5 mm), breath (half a degree for each segment), and the movement of pelvis and
-// trunk in walking (4 degrees).
+// Random numbers (random.h): stream 104 of a seed gives frequencies and phases of sway, breath and
+// glances, by their number. Lanes 0 to 2 of number 10 give the person's style of holding feet and
+// arms. These sizes are estimates: sway (5 mm), breath (half a degree for each segment), and the
+// movement of pelvis and trunk in walking (4 degrees).
 #include "kinalign/simulate/person/built_in_body.h"
 
 #include "kinalign/motion/rotation.h"

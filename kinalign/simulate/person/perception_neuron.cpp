@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 100 of a person's seed has these lanes: 0 legs, 2 arms, 4 width of hips and shoulders, 6
-// feet. The deviations are estimates from the variation of segments relative to stature in Drillis
-// and Contini's tables, as printed by Winter (Biomechanics and Motor Control of Human Movement,
-// chapter 4).
+// Random numbers (random.h): stream 100 of a person's seed has these lanes: 0 legs, 2 arms, 4 width
+// of hips and shoulders, 6 feet. The deviations are estimates from the variation of segments
+// relative to stature in Drillis and Contini's tables, as printed by Winter (Biomechanics and Motor
+// Control of Human Movement, chapter 4).
 #include "kinalign/simulate/person/perception_neuron.h"
 
 #include "kinalign/simulate/random.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 101 of a seed, by the number of the act, has these lanes: 0 side, 1 amplitude, 2 tempo, 3
-// speed. Stream 102, by the number of the round: lanes 0 to 7 the order, 8 to 15 the lengths.
+// Random numbers (random.h): stream 101 of a seed, by the number of the act, has these lanes: 0
+// side, 1 amplitude, 2 tempo, 3 speed. Stream 102, by the number of the round: lanes 0 to 7 the
+// order, 8 to 15 the lengths.
 #include "kinalign/simulate/person/programme.h"
 
 #include "kinalign/simulate/random.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 105 of a seed, by 4096 times the number of the act plus the number of the repetition, has
-// these lanes: 0 length, 1 and 2 duration of the movement there and back, 3 amplitude.
+// Random numbers (random.h): stream 105 of a seed, by 4096 times the number of the act plus the
+// number of the repetition, has these lanes: 0 length, 1 and 2 duration of the movement there and
+// back, 3 amplitude.
 #include "kinalign/simulate/person/repetitions.h"
 
 #include "kinalign/simulate/random.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stream 120 of the seed. Number 0 has these lanes: 0 to 3 position of the camera, 4 and 5 its
-// tilt, 6 its clock. Number 1: lanes 0 and 2 the latencies of the clicks, 4 the phase of the suit's
-// frames.
+// Random numbers (random.h): stream 120 of the seed. Number 0 has these lanes: 0 to 3 position of
+// the camera, 4 and 5 its tilt, 6 its clock. Number 1: lanes 0 and 2 the latencies of the clicks, 4
+// the phase of the suit's frames.
 #include "kinalign/simulate/rehearsal/rehearsal.h"
 
 #include "kinalign/motion/kinect_joints.h"
