@@ -158,8 +158,8 @@ std::variant<ClipGroup, PointGroup, ImuGroup> kind_of(const RecordedStream& s,
   return ImuGroup{imu.node_names, imu.content, options.root_node};
 }
 
-/// Returns the space of a stream's positions: the reference's space, or the stream's own space if
-/// it is not moved.
+/// Returns the space of a stream's positions: "take" for the reference's space, or the name of the
+/// stream that gives the space and is not moved.
 std::string space_of(const std::string& stream, const std::string& reference,
                      const Manifest& manifest) {
   const auto found = manifest.spaces.find(stream);

@@ -56,7 +56,7 @@ class ResidualSums {
   std::vector<double> before_, after_;  // m2
 };
 
-/// Rotation about the y axis, counter-clockwise seen from +y.
+/// Returns the rotation about the y axis, counter-clockwise seen from +y.
 Quat turn_about_y(double degrees);
 
 }  // namespace kinalign

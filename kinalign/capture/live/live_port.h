@@ -27,7 +27,7 @@ class LivePort {
  public:
   static constexpr std::size_t most_clients = 8;
   /// Limit on the bytes that wait for one client, in addition to the kernel's buffer. The limit is
-  /// half a minute of data from a Kinect and a motion capture suit.
+  /// about 18 s of data from a motion capture suit, a Kinect and five nodes.
   static constexpr std::size_t most_waiting = std::size_t{4} << 20;
 
   /// Listens on 127.0.0.1. Port 0: any free port. Each stream begins with `header` and `head`.
