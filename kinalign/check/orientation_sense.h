@@ -31,10 +31,10 @@ class OrientationSense {
   };
   struct Node {
     std::uint64_t samples = 0;
-    Vec3 up = Vec3::Zero();    // sum of accelerations in the world's axes, m/s2
-    std::optional<Last> last;  // the newest valid sample
-    std::uint64_t turns = 0;   // number of pairs of consecutive samples
-    double both = 0.0;         // sum of scalar products of the rotation vectors, rad2
+    Vec3 up = Vec3::Zero();               // sum of accelerations in the world's axes, m/s2
+    std::optional<Last> last;             // the newest valid sample
+    std::uint64_t turns = 0;              // number of pairs of consecutive samples
+    double both = 0.0;                    // sum of scalar products of the rotation vectors, rad2
     double turned = 0.0, measured = 0.0;  // sums of the squared rotation vectors, rad2
     double times = 0.0;                   // sum of the squared time steps, s2
   };
