@@ -20,7 +20,8 @@ Result<std::array<int, 2>> child_pipe() {
 
 Result<pid_t> start_child(const std::string& program, std::vector<std::string> words, int out,
                           int err) {
-  // posix_spawn takes char*. The words must not move any more once their addresses are taken.
+  // posix_spawn takes pointers to the characters of `words`. `words` must not change after the
+  // pointers are taken.
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
@@ -45,7 +46,8 @@ Result<pid_t> start_child(const std::string& program, std::vector<std::string> w
 
 int wait_for_child(pid_t child) {
   int status = 0;
-  // A signal to this process may interrupt waiting; the child goes on.
+  // A signal to this process may interrupt waitpid(). The child still runs then, so waiting goes
+  // on.
   while (::waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) return -1;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Other programs, started as child processes.
+// Starts other programs as child processes and waits for them.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -12,18 +12,18 @@
 
 namespace kinalign {
 
-/// A pipe, [0] for reading and [1] for writing. Neither end is inherited, so the end of the output
-/// of one child does not depend on another child.
+/// Opens a pipe: [0] is the end for reading, [1] the end for writing. No child inherits either end.
+/// A reader therefore sees the end of a child's output even while another child runs.
 Result<std::array<int, 2>> child_pipe();
 
-/// Starts a program, which is searched in PATH if it has no '/'. `words`: its arguments from its
-/// own name on. Standard input is /dev/null. `out` and `err` are copied to its standard output and
-/// error; -1 stands for /dev/null.
+/// Starts a program. A name without '/' is searched in PATH. `words` are the program's arguments;
+/// the first word is the program's own name. The program's standard input is /dev/null. Its
+/// standard output and error go to the descriptors `out` and `err`; -1 stands for /dev/null.
 Result<pid_t> start_child(const std::string& program, std::vector<std::string> words, int out,
                           int err);
 
-/// Waits for the end. Returns the exit code; 128 plus the signal's number if a signal ended it, as
-/// in a shell.
+/// Waits until the child has ended. Returns the child's exit code. If a signal ended the child,
+/// returns 128 plus the signal's number, as a shell does.
 int wait_for_child(pid_t child);
 
 }  // namespace kinalign

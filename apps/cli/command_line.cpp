@@ -16,14 +16,14 @@ namespace {
 constexpr std::array<std::pair<char, std::string_view>, 4> letters{
     {{'o', "out"}, {'q', "quiet"}, {'v', "verbose"}, {'h', "help"}}};
 
-/// A minus before a digit or a point begins a number: `--yaw -12.5` has a value and no flag.
+/// A word such as -12.5 is a number and not a flag: in `--yaw -12.5` it is the value of --yaw.
 bool looks_like_a_flag(std::string_view word) {
   return word.size() > 1 && word[0] == '-' && word.find_first_of("0123456789.") != 1;
 }
 
-/// Parses the words of one call in one pass.
-/// `at_` is the word at hand; set_bare() moves it on if it takes the next word as a value. `plain_`
-/// collects the words that are no flags; they are placed at the end, when their number is known.
+/// Parses the words of one command line in one pass. `at_` is the index of the current word.
+/// set_bare() moves `at_` on if the next word is the flag's value. `plain_` collects the words that
+/// are no flags. They are given to the positionals at the end, when their number is known.
 class Walk {
  public:
   Walk(const std::vector<std::string>& words, const Usage& usage, const Fields& common)
@@ -33,7 +33,7 @@ class Walk {
     }
   }
 
-  // Flags may stand between other words; after "--" every word is taken as it stands.
+  // Flags may stand between other words. After "--" no word is taken as a flag.
   Result<Parsed> parse() {
     bool flags = true;
     for (; at_ < words_.size(); ++at_) {
@@ -52,7 +52,7 @@ class Walk {
   }
 
  private:
-  // A flag with two dashes: "--flag", "--flag=value" or "--no-flag".
+  // Parses a flag with two dashes: "--flag", "--flag=value" or "--no-flag".
   Result<void> long_flag(const std::string& word) {
     const auto equals = word.find('=');
     const std::string flag = word.substr(0, equals);
@@ -65,13 +65,13 @@ class Walk {
     if (field != nullptr) {
       return has_value ? set(*field, flag, word.substr(equals + 1)) : set_bare(*field, flag);
     }
-    // Switches can be set by a file or a variable, so a flag must be able to unset them.
+    // A settings file or a variable may switch an option on, so "--no-flag" must switch it off.
     field = flag.starts_with("--no-") ? find("--" + flag.substr(5)) : nullptr;
     if (field != nullptr && is_switch(*field) && !has_value) return set(*field, flag, "false");
     return unknown(flag);
   }
 
-  // Flags of one letter, which may be joined: "-vo FILE".
+  // Parses flags of one letter, which may be joined: "-vo FILE".
   Result<void> letter(const std::string& word) {
     for (std::size_t i = 1; i < word.size(); ++i) {
       const std::string flag{'-', word[i]};
@@ -87,7 +87,7 @@ class Walk {
     return {};
   }
 
-  /// A flag without '='. If it needs a value, the next word is the value.
+  /// Sets the option of a flag without '='. If the flag needs a value, the next word is the value.
   Result<void> set_bare(const Field& field, const std::string& flag) {
     if (is_switch(field)) return set(field, flag, "true");
     if (at_ + 1 == words_.size() || looks_like_a_flag(words_[at_ + 1])) {
@@ -101,24 +101,26 @@ class Walk {
   // once.
   Result<void> set(const Field& field, const std::string& flag, const std::string& text) {
     const bool many = std::holds_alternative<std::vector<std::string>*>(field.value);
-    // A flag given twice is mostly a mistake in a long command; lists are meant to be repeated.
+    // A flag that is given twice is mostly a mistake in a long command. Only flags of lists may be
+    // repeated.
     const bool first = parsed_.given.insert_or_assign(field.name, Source::flag).second;
     if (!first && !many) return refuse(flag, "this flag once", "it twice");
     if (first && many) std::get<std::vector<std::string>*>(field.value)->clear();
     return set_field(field, text).map_error(in_file(flag));
   }
 
-  // Gives the words to the verb's positionals. One that takes several leaves enough words for those
-  // after it.
+  // Gives the words to the verb's positionals. A positional that takes several words leaves enough
+  // words for the positionals after it.
   Result<void> place_words() {
     std::size_t next = 0;
     std::size_t needed = 0;  // words that the positionals after this one need
     for (const Positional& place : usage_.positionals) needed += place.least;
     if (plain_.size() < needed)
-      needed = 0;  // too few words: then the last ones are missing, not
-                   // the first
+      // With too few words, the first positionals get theirs and the last ones are reported as
+      // missing.
+      needed = 0;
     for (const Positional& place : usage_.positionals) {
-      // The words that this one needs are no longer kept for others.
+      // `needed` counts only the positionals after this one.
       needed -= std::min(needed, place.least);
       for (std::size_t n = 0; n < place.most && next + needed < plain_.size(); ++n, ++next) {
         KA_TRY(place_word(place, plain_[next]));
@@ -133,7 +135,7 @@ class Walk {
     if (!usage_.positionals.empty()) {
       advice = usage_.positionals.back().if_more;
     } else if (further.ends_with(".toml")) {
-      // People often name a lab file as they name a manifest.
+      // People often give a lab file as a word, as they give a manifest; it belongs to --config.
       advice = "did you mean --config " + shown(further) + "?";
     }
     return refuse("", "no more words" + (advice.empty() ? "" : " (" + advice + ")"),
@@ -200,7 +202,7 @@ Fields common_fields(Common& common, const Page& page) {
     const auto& names = page.common;
     if (std::find(names.begin(), names.end(), field.name) != names.end()) fields.push_back(field);
   }
-  // These exist for every verb.
+  // Every verb has the flags below.
   fields.push_back(
       {"config", "settings to use instead of the project's kinalign.toml", &common.config});
   fields.push_back({"quiet", "print errors only", &common.quiet});

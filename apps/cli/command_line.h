@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns the words of a command line into a verb's options. It is written by hand: the flags come
-// from core's Fields, errors name the nearest known flag and the range, and each value knows its
-// source. Teaching a library all of that would take more code.
+// Turns the words of a command line into a verb's options. The parser is written by hand, because
+// no library uses core's Fields. Its errors name the most similar flag and the allowed range, and
+// each option knows the source of its value.
 #pragma once
 
 #include "apps/cli/verb.h"
@@ -11,10 +11,10 @@
 
 namespace kinalign {
 
-/// The flags that a verb takes besides its own, for parsing and for its help page.
+/// The flags that a verb shares with other verbs, for parsing and for the help page.
 Fields common_fields(Common& common, const Page& page);
 
-/// True for those of the common options that the environment and settings files may set.
+/// True if the environment and settings files may set this common option.
 bool is_common_setting(const std::string& name);
 
 /// The result of parsing a command line.
@@ -23,14 +23,14 @@ struct Parsed {
   Sources given;  // options set by a flag
 };
 
-/// Fails with an Error whose `file` is the flag or word at fault: "--gap-ms". Accepts `--flag
-/// value`, `--flag=value`, switches as `--flag` or `--no-flag`, and -o, -q, -v, -h. Words after
-/// `--` are not flags.
-/// The values go straight into the options to which the fields point.
+/// Parses the words and sets the options that the fields point to. Accepts `--flag value`,
+/// `--flag=value`, `--flag` and `--no-flag` for switches, and -o, -q, -v, -h. Words after `--` are
+/// not flags. If a word is wrong, the Error's `file` is that flag or word: "--gap-ms".
 Result<Parsed> parse_words(const std::vector<std::string>& words, const Usage& usage,
                            const Fields& common);
 
-/// The line below an unknown word: "did you mean align?". Empty if no known word is similar.
+/// The line printed below an unknown word: "did you mean align?". Empty if no known word is
+/// similar.
 std::string suggestion(const std::string& word, const std::vector<std::string>& known);
 
 }  // namespace kinalign

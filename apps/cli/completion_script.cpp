@@ -23,7 +23,7 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-/// Calls use(page, usage, fields) for each verb; `fields` has all of its flags.
+/// Calls use(page, usage, fields) for each verb. `fields` has all flags of the verb.
 template <class Use>
 void for_each_verb(const std::vector<Verb>& verbs, Use&& use) {
   for (const Verb& verb : verbs) {
@@ -38,9 +38,9 @@ void for_each_verb(const std::vector<Verb>& verbs, Use&& use) {
   }
 }
 
-/// The words that a flag accepts; empty: any text, or a file.
+/// The words that a flag accepts. Empty if the flag accepts any text or a file.
 std::vector<std::string> values_of(const Field& field) {
-  // Layouts are known only to the registry of formats.
+  // Fields do not list layouts; the registry of file formats does.
   if (field.name != "layout" && !field.name.ends_with("_layout")) return field.choices;
   const auto names = format_names();
   return {names.begin(), names.end()};
@@ -65,16 +65,16 @@ std::string choices_of(const Usage& usage) {
   return joined(choices);
 }
 
-/// Text for single quotes of a shell, without characters that have a meaning in zsh's _arguments.
-/// Texts lose a few characters; escaping them for three shells would be harder to get right.
+/// Makes a text fit between single quotes of a shell: the characters that quotes or zsh's
+/// _arguments would misread are removed. Correct escapes for three shells would be harder.
 std::string quotable(std::string text) {
   std::erase_if(text, [](char c) { return c == '\'' || c == '[' || c == ']'; });
   std::replace(text.begin(), text.end(), ':', ',');
   return text;
 }
 
-/// A bash script with one case for each flag that takes a value, and one for each verb.
-/// Each case looks at the verb and at the word before the cursor, so a case is a verb with a flag.
+/// Makes the bash script: one case for each flag that takes a value, and one for each verb. The
+/// script compares each case with the verb and the word before the cursor.
 std::string bash_script(const std::vector<Verb>& verbs) {
   std::string cases;
   for_each_verb(verbs, [&](const Page& page, const Usage& usage, const Fields& fields) {
@@ -109,7 +109,7 @@ std::string bash_script(const std::vector<Verb>& verbs) {
       verb_names(verbs), groups, cases);
 }
 
-/// A zsh script with one call of _arguments for each verb.
+/// Makes the zsh script, with one call of _arguments for each verb.
 std::string zsh_script(const std::vector<Verb>& verbs) {
   std::string list;
   for (const Verb& verb : verbs) {
@@ -154,8 +154,8 @@ std::string zsh_script(const std::vector<Verb>& verbs) {
       list, groups, cases);
 }
 
-/// The lines that complete one verb's options, and its positionals with fixed choices. `within`:
-/// the beginning of each line.
+/// The lines that complete one verb's options and those positionals that have fixed choices. Each
+/// line begins with the text `within`.
 std::string fish_options(const std::string& within, const Usage& usage, const Fields& fields) {
   std::string text;
   for (const Field& field : fields) {
@@ -172,8 +172,8 @@ std::string fish_options(const std::string& within, const Usage& usage, const Fi
   return text;
 }
 
-/// A fish script with a line for each verb and each flag.
-/// fish takes one condition for each line, which says after which verbs the line counts.
+/// Makes the fish script, with a line for each verb and each flag. The condition of each line says
+/// after which verb fish uses the line.
 std::string fish_script(const std::vector<Verb>& verbs) {
   std::string text = "# fish completion of kinalign\n";
   for (const std::string& group : groups_of(verbs)) {

@@ -16,13 +16,13 @@ namespace kinalign {
 
 namespace {
 
-// The only variable that outlives a call: a signal handler gets no argument of ours.
+// A global variable is needed, because a signal handler gets no argument from this program.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
 std::atomic<bool> ctrl_c = false;  // any thread may read it
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-// ANSI colours in the order of Colour. Streams have the colours of pages: mocap red, Kinect green,
-// nodes blue.
+// The ANSI codes, in the order of the enumerators of Colour. Each kind of stream has the same
+// colour as on the HTML pages: mocap red, Kinect green, nodes blue.
 constexpr std::array<std::string_view, 7> codes{"",         "\x1b[32m", "\x1b[33m", "\x1b[31m",
                                                 "\x1b[31m", "\x1b[32m", "\x1b[34m"};
 constexpr std::string_view plain = "\x1b[0m";
@@ -33,21 +33,22 @@ std::string painted(bool wanted, Colour colour, std::string_view text) {
   return fmt::format("{}{}{}", code, text, plain);
 }
 
-/// --color decides; else NO_COLOR (no-color.org), which counts if it is set and not empty.
+/// If --color is "auto", colours appear on a terminal, unless TERM is dumb or the variable NO_COLOR
+/// (no-color.org) is not empty.
 bool colour_wanted(const Surroundings& surroundings, const Common& common, bool terminal) {
   if (common.color != "auto") return common.color == "always";
   return terminal && surroundings.variable("NO_COLOR").empty() &&
          surroundings.variable("TERM") != "dumb";
 }
 
-/// No progress if it would stand between the lines of --json on the same terminal.
+/// No progress line if the lines of --json go to the same terminal: it would stand between them.
 bool progress_wanted(const Surroundings& surroundings, const Common& common) {
   return surroundings.err_is_terminal && !common.quiet && surroundings.variable("TERM") != "dumb" &&
          !(common.json && surroundings.out_is_terminal);
 }
 
-/// The rate in the unit of the job: bytes for reading, hashing and building, takes for comparing,
-/// frames for all else.
+/// The speed of the job in its own unit: bytes for reading, hashing and building, takes for
+/// comparing, frames for all other jobs.
 std::string rate_text(std::string_view what, double per_s) {
   const bool by_bytes = what.starts_with("reading") || what == "hashing" || what == "building";
   if (what == "comparing") return fmt::format("{:.0f} takes/s", per_s);
@@ -64,12 +65,13 @@ std::string time_text(double s) {
   return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
 }
 
-/// Installs the signal handler. SIGPIPE and SIGXFSZ are ignored, so that a failed write is an
-/// error.
+/// Installs the signal handler. SIGPIPE and SIGXFSZ are ignored, so that a failed write returns an
+/// error and does not end the program.
 void note_signals(unsigned flags) {
   ctrl_c = false;
   struct sigaction action {};
-  // A handler may do little; the job sees the flag at its next call of progress.
+  // A signal handler may do little, so it only sets a flag. The job reads the flag at its next call
+  // of progress.
   action.sa_handler = [](int) { ctrl_c = true; };
   action.sa_flags = static_cast<int>(flags);
   ::sigaction(SIGINT, &action, nullptr);
@@ -77,23 +79,21 @@ void note_signals(unsigned flags) {
   struct sigaction hang_up {};
   ::sigaction(SIGHUP, nullptr, &hang_up);
   if (hang_up.sa_handler != SIG_IGN)
-    ::sigaction(SIGHUP, &action, nullptr);  // an ignored SIGHUP
-                                            // (nohup) stays
-                                            // ignored
+    ::sigaction(SIGHUP, &action, nullptr);  // an ignored SIGHUP (nohup) stays ignored
   ::signal(SIGPIPE, SIG_IGN);
-  ::signal(SIGXFSZ, SIG_IGN);  // a limit of file sizes then acts like a full disk
+  ::signal(SIGXFSZ, SIG_IGN);  // a file above the size limit then acts like a full disk
 }
 
 }  // namespace
 
-// Parts that are not known yet are left out: no total, no per cent.
+// If the total is not known, the line has neither a percentage nor the time left.
 std::string progress_line(std::string_view what, std::uint64_t done, std::uint64_t total,
                           double elapsed_s, std::size_t width) {
   std::string line(what);
   const auto doing = static_cast<double>(done);
   const auto all = static_cast<double>(total);
   if (total > 0) line += fmt::format("  {:.0f} %", 100 * std::min(1.0, doing / all));
-  // Rates of the first moments are too uncertain to show.
+  // The rate of the first half second is too uncertain to show.
   if (done > 0 && elapsed_s > 0.5) {
     line += "  " + rate_text(what, doing / elapsed_s);
     if (total > done) line += fmt::format("  {} left", time_text(elapsed_s * (all / doing - 1)));
@@ -101,7 +101,8 @@ std::string progress_line(std::string_view what, std::uint64_t done, std::uint64
   return line.substr(0, width);
 }
 
-// SA_RESETHAND: a second Ctrl-C finds the default handler and ends the program at once.
+// SA_RESETHAND restores the default handler after the first Ctrl-C, so a second Ctrl-C ends the
+// program at once.
 void take_signals() { note_signals(SA_RESETHAND | SA_RESTART); }
 void take_every_signal() { note_signals(SA_RESTART); }
 
@@ -117,7 +118,7 @@ Console::Console(const Surroundings& surroundings, const Common& common, std::st
       out_(surroundings.out),
       err_(surroundings.err) {}
 
-// A progress line must not stay on the terminal, whatever has ended the verb.
+// The progress line must not stay on the terminal after the verb has ended.
 Console::~Console() {
   erase_shown();
   err_.flush();
@@ -131,11 +132,11 @@ void Console::never_wait() {
 
 void Console::print(std::string_view text) {
   if (common_.quiet || common_.json) return;
-  // Into a pipe or a file, lines stay whole: other programs read them.
+  // Lines in a pipe or a file are not broken, because other programs read them.
   put(surroundings_.out_is_terminal ? broken(text, size_of(surroundings_.out).columns) : text);
 }
 
-/// Before the object it reports lines that were dropped, if there were any.
+/// If lines were dropped, a line that reports them is printed before the object.
 void Console::print_json(std::string_view object, int version) {
   if (!prints_json()) return;
   if (const std::uint64_t missed = out_.take_dropped()) {
@@ -149,7 +150,8 @@ void Console::put_json(std::string_view object, int version) {
   const std::string_view members = object.substr(object.find('{') + 1);
   const bool none = members.find_first_not_of(" \n") == members.find('}');
   std::string name = json_name_.empty() ? verb_ : json_name_;
-  // A verb of a group has a blank in its name, a schema has none: "kinalign.dataset.build".
+  // The name of a verb in a group has a blank. The schema has a dot instead:
+  // "kinalign.dataset.build".
   std::replace(name.begin(), name.end(), ' ', '.');
   put(fmt::format("{{\"schema\": \"kinalign.{}/{}\"{}{}\n", name, version, none ? "" : ", ",
                   members.substr(std::min(members.find_first_not_of(" \n"), members.size()))));
@@ -182,14 +184,15 @@ Progress Console::progress() {
 void Console::show(std::vector<std::pair<std::string, Colour>> lines) {
   if (!progress_) return;
   table_ = std::move(lines);
-  // A terminal that takes no text would only get old tables later.
+  // While the terminal takes no text, no new table is added: it would be out of date when it
+  // appears.
   if (err_.holds()) return;
   erase_shown();
   draw_table();
   err_.flush();
 }
 
-/// Draws the part of the table for which the terminal has room now.
+/// Draws as many lines of the table as the terminal has rows for.
 void Console::draw_table() {
   // A table higher than the terminal would scroll and could not be erased.
   const std::size_t count = std::min(table_.size(), rows());
@@ -236,7 +239,7 @@ std::string Console::out_trouble() const {
   return out_.fault() == 0 ? "" : std::strerror(out_.fault());
 }
 
-/// Waits up to a second for a slow reader. A reader that went away (EPIPE) is no error.
+/// Waits up to a second for a slow reader. A reader that has closed the pipe (EPIPE) is no error.
 Result<void> Console::finish() {
   // A reader that never reads must not keep the program alive.
   constexpr std::chrono::milliseconds last_words{1000};
@@ -252,7 +255,7 @@ Result<void> Console::finish() {
 /// Redraws the progress line, at most ten times a second.
 void Console::show_progress(std::string_view what, std::uint64_t done, std::uint64_t total) {
   const Clock::time_point now = Clock::now();
-  // Each part of a job has its own rate and its own time left.
+  // Each part of a job has its own rate and its own remaining time.
   if (doing_ != what) {
     doing_ = what;
     began_ = now;
@@ -262,15 +265,15 @@ void Console::show_progress(std::string_view what, std::uint64_t done, std::uint
   drawn_ = now;
   const double elapsed_s = std::chrono::duration<double>(now - began_).count();
   const std::string line = progress_line(what, done, total, elapsed_s, columns());
-  if (standing_.empty()) err_.put(start_of_lines(1));  // the terminal may have printed "^C" there
+  if (standing_.empty()) err_.put(start_of_lines(1));  // a terminal prints "^C" for Ctrl-C
   erase_shown();
   err_.put(line);
   err_.flush();
   standing_ = {places(line)};
 }
 
-/// Erases the progress line or table. A terminal that was made narrower has broken its lines into
-/// more rows.
+/// Erases the progress line or the table. If the terminal was made narrower, it has broken their
+/// lines into more rows, which are counted anew.
 void Console::erase_shown() {
   if (standing_.empty()) return;
   const std::size_t width = size_of(surroundings_.err).columns;
@@ -280,8 +283,9 @@ void Console::erase_shown() {
   standing_.clear();
 }
 
-/// Writes the message above the table in one piece, so that nothing flickers; text held for stdout
-/// goes first. If the terminal takes nothing, the table is not added to each message.
+/// Writes the message above the table, all in one piece so that the table does not flicker. Text
+/// held for stdout is written before. While the terminal takes no text, the table is not drawn
+/// again with each message.
 void Console::say_above_table(std::string_view message) {
   const bool stuck = err_.holds();
   erase_shown();

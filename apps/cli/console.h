@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The output of a verb: results on stdout, everything else on stderr. Colour and the progress line
-// appear only if wanted (docs/commands.md).
+// The output of a verb: results on stdout, all other text on stderr. docs/commands.md states when
+// colours and the progress line appear.
 #pragma once
 
 #include "apps/cli/outlet.h"
@@ -29,9 +29,9 @@ constexpr Colour colour_of(Severity severity) {
 /// Lines below an error: the work that was not done, and the next step.
 using Advice = std::function<std::vector<std::string>(const Error&)>;
 
-/// Both outlets hold text until it is flushed. On a terminal, lines that stay at the bottom
-/// (progress or table) are erased before any other line and drawn again below it; `standing_` has
-/// the widths of those that are there now.
+/// Text for stdout and stderr is held until it is flushed. On a terminal the progress line or a
+/// table stays at the bottom: it is erased before any other line and drawn again below. `standing_`
+/// has the widths of the lines now at the bottom.
 class Console {
  public:
   Console(const Surroundings& surroundings, const Common& common, std::string verb);
@@ -40,38 +40,38 @@ class Console {
   ~Console();
 
   /// Prints whole lines of the result on stdout. On a terminal, lines are broken at its width.
-  /// Silent with --quiet and --json.
+  /// Prints nothing with --quiet or --json.
   void print(std::string_view text);
 
-  /// Prints JSON for --json. `object` is the text "{...}" of a JSON object, which gets "schema":
-  /// "kinalign.<verb>/<version>" as its first member. Silent without --json.
+  /// Prints a line of JSON on stdout if --json was given. `object` is the text "{...}" of a JSON
+  /// object; the member "schema": "kinalign.<verb>/<version>" is added as its first.
   void print_json(std::string_view object, int version = 1);
-  /// Sets another name for <verb>: the schema kinalign.report is that of the report in a take.
+  /// Sets a name for the schema other than <verb>. For example, the report in a take has
+  /// kinalign.report.
   void name_json(std::string name) { json_name_ = std::move(name); }
-  /// True if print_json() prints. Callers use it to skip making JSON every second.
+  /// True if print_json() prints. A caller that would make JSON every second asks first.
   bool prints_json() const { return common_.json; }
 
-  /// Prints text that is the result itself (a man page, a completion) on stdout, whatever the
-  /// flags.
+  /// Prints text on stdout with any flags, such as a man page or a completion script.
   void put(std::string_view text);
 
-  /// Prints a line on stderr; silent with --quiet.
+  /// Prints a line on stderr, but not with --quiet.
   void note(std::string_view line);
-  /// Prints a line on stderr, only with --verbose.
+  /// Prints a line on stderr only with --verbose.
   void detail(std::string_view line);
   /// Prints a line on stderr, with any flags.
   void complain(std::string_view line);
 
-  /// The text in a colour if stdout shows colours.
+  /// Puts the text into the codes of a colour if stdout shows colours.
   std::string paint(Colour colour, std::string_view text) const;
 
-  /// The progress line on stderr. It is shown only on a terminal, not if --json goes to a terminal
-  /// too, and erased at the end. The returned function is false after the first Ctrl-C; a second
-  /// one ends the program at once.
+  /// Shows the progress line on stderr and erases it at the end. The line appears only on a
+  /// terminal, and not if --json goes to a terminal, too. The returned function gives false after
+  /// the first Ctrl-C. A second Ctrl-C ends the program at once.
   Progress progress();
 
   /// Shows lines on stderr below all other output, under the same conditions as the progress line.
-  /// They stay until the next call and are erased at the end. Lines that do not fit into the
+  /// The lines stay until the next call of show() and are erased at the end. Lines too long for the
   /// terminal are cut.
   void show(std::vector<std::pair<std::string, Colour>> lines);
   /// True if show() shows anything.
@@ -79,36 +79,36 @@ class Console {
   /// Rings the bell, under the same conditions as show().
   void ring();
 
-  /// Sets the advice for the case that the verb fails; the last call counts. It is called after the
-  /// verb has returned, so it must hold its data by value.
+  /// Sets the advice that is printed if the verb fails; the last call counts. `advice` is called
+  /// after the verb has returned, so it must hold copies of its data and no references.
   void if_it_fails(Advice advice) { advice_ = std::move(advice); }
-  /// Sets one line of advice, for any failure.
+  /// Sets one line of advice for any failure.
   void advise(std::string line);
-  /// States that the file is complete, even if the verb fails later. An empty path is ignored.
+  /// Makes a later error message say that this file is complete. An empty path is ignored.
   void wrote(const std::string& path);
 
-  /// Returns the failure for wrong use that only the files show. The exit code is that of wrong
-  /// use.
+  /// Returns a failure for which the program exits with the code of wrong use. Verbs call it if
+  /// only the content of the files shows that the command was wrong.
   Failure refuse(Error error);
   bool refused() const { return refused_; }
 
-  /// The columns and the rows that show() can use.
+  /// The number of columns and of rows that show() can use.
   std::size_t columns() const;
   std::size_t rows() const;
 
   /// Prints the error and the advice.
   void report(const Error& error);
 
-  /// For a job that must go on while no program reads its output: see Outlet. Lines of --json that
-  /// were dropped are reported later by a line {"event": "missed", "lines": N}.
+  /// Output no longer delays the job, even if no program reads it (Outlet::never_wait). If lines of
+  /// --json were dropped, a later line {"event": "missed", "lines": N} counts them.
   void never_wait();
 
-  /// Writes held text, for a job that goes on.
+  /// Writes the held text now; the job goes on.
   void flush();
-  /// The reason why stdout takes no text: "No space left on device". Empty if it works.
+  /// The reason why stdout takes no text: "No space left on device". Empty if stdout takes text.
   std::string out_trouble() const;
-  /// Writes the held text at the end. Fails if stdout refused it; a reader that went away is no
-  /// failure.
+  /// Writes the held text at the end. Fails if stdout refuses the text. A reader that has closed
+  /// the pipe is no failure.
   Result<void> finish();
 
  private:
@@ -125,26 +125,28 @@ class Console {
   const Common& common_;
   std::string verb_, json_name_;
   Advice advice_;
-  // Wrong use that only the files showed; see refuse().
+  // True after refuse() was called.
   bool refused_ = false;
   bool colour_out_ = false, colour_err_ = false, progress_ = false;
   Outlet out_, err_;
-  std::string doing_;                                  // the job in the progress line
+  // the current job, named in the progress line
+  std::string doing_;
   std::vector<std::pair<std::string, Colour>> table_;  // the lines of the last show()
   std::vector<std::size_t> standing_;  // the width of each line on the terminal: table or progress
   Clock::time_point began_{}, drawn_{};
 };
 
-/// The progress line: "reading  43 %  1.2 MB/s  12 s left". `elapsed_s`: since the job's begin;
-/// `width`: the line is cut there.
+/// The progress line: "reading  43 %  1.2 MB/s  12 s left". `elapsed_s`: the time since the job
+/// began. `width`: the number of columns at which the line is cut.
 std::string progress_line(std::string_view what, std::uint64_t done, std::uint64_t total,
                           double elapsed_s, std::size_t width);
 
-/// From here on the first Ctrl-C, SIGTERM or SIGHUP is only noted, and a reader of stdout that goes
-/// away raises no signal. If SIGHUP was ignored at the start (nohup), it stays ignored.
+/// After this call the first Ctrl-C, SIGTERM or SIGHUP does not end the program; interrupted()
+/// reports it. A SIGHUP that was ignored at the start (nohup) stays ignored. A reader that closes
+/// stdout raises no signal.
 void take_signals();
-/// Like take_signals(), but every such signal is only noted: a closed terminal sends SIGHUP, and so
-/// does its shell. The caller has to end by itself.
+/// Works like take_signals(), but no later signal ends the program either. A closed terminal sends
+/// SIGHUP twice, since its shell sends one, too. The caller has to stop by itself.
 void take_every_signal();
 /// True if Ctrl-C, SIGTERM or SIGHUP came since take_signals().
 bool interrupted();

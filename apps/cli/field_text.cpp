@@ -19,7 +19,7 @@ struct Overloaded : Kinds... {
 template <class... Kinds>
 Overloaded(Kinds...) -> Overloaded<Kinds...>;  // clang 14 needs this guide
 
-/// The shortest text that gives the same number again.
+/// The shortest text that set_field() reads as exactly the same number.
 std::string text_of(double number) {
   std::array<char, number_room> room{};
   const char* end = std::to_chars(room.data(), room.data() + room.size(), number).ptr;
@@ -47,8 +47,8 @@ Result<double> number_in(const Field& field, std::string_view text) {
   return value;
 }
 
-/// A whole number within the option's range.
-/// Ranges are stored as double for all kinds of number.
+/// Parses a whole number within the option's range. Ranges are stored as double for all kinds of
+/// number.
 Result<std::int64_t> integer_in(const Field& field, std::string_view text) {
   std::int64_t value = 0;
   const bool is_whole = parse_integer(text, value);
@@ -59,7 +59,7 @@ Result<std::int64_t> integer_in(const Field& field, std::string_view text) {
   return value;
 }
 
-/// The words that people write in files and variables.
+/// Parses the words for true and false that people write in files and variables.
 Result<bool> truth_in(std::string_view text) {
   if (text == "true" || text == "1" || text == "yes") return true;
   if (text == "false" || text == "0" || text == "no") return false;
@@ -103,7 +103,7 @@ Result<void> set_field(const Field& field, std::string_view text) {
       [&](std::vector<std::string>* at) -> Result<void> {
         return string_in(field, text).map([&](std::string v) { at->push_back(std::move(v)); });
       },
-      // Tables and lists of numbers exist in files only.
+      // Only files can set tables and lists of numbers.
       [&](auto*) -> Result<void> { return instead_of("an option that has a flag", field.name); },
   };
   return std::visit(set, field.value);
@@ -124,7 +124,7 @@ std::string field_text(const Field& field) {
         for (const std::string& one : *at) all += (all.empty() ? "" : ", ") + one;
         return all;
       },
-      [](const auto*) { return std::string(); },  // a table or numbers: in files only
+      [](const auto*) { return std::string(); },  // only files can set a table or a list of numbers
   };
   return std::visit(text, field.value);
 }
@@ -141,8 +141,8 @@ std::string placeholder(const Field& field) {
   }
   if (!choices.empty()) return choices;
   if (field.name.ends_with("layout")) return "LAYOUT";
-  // Names of options whose value says more than TEXT or NUMBER; a field may also state its own
-  // word.
+  // The word for an option's value in the help page, where TEXT or NUMBER would say too little. A
+  // field may also state its own word.
   constexpr std::array<std::pair<std::string_view, std::string_view>, 27> names{
       {{"out", "FILE"},         {"config", "FILE"},       {"mocap", "FILE"},
        {"kinect", "FILE"},      {"inputs", "FOLDER"},     {"imu", "NODE=FILE"},

@@ -10,7 +10,7 @@
 namespace kinalign {
 
 std::vector<std::string> file_advice(const Error& error) {
-  // GNU ddrescue copies what it can and reads around bad sectors.
+  // GNU ddrescue copies all readable sectors of a disk and skips the bad ones.
   if (error.kind == ErrorKind::unreadable_disk) {
     return {"ddrescue " + harmless(error.file) + " COPY/" + harmless(file_name(error.file)) +
             " copies all that the disk can read; use the copy, with copies of all other parts"};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lines below a failure that name another file or another command.
+// Advice below an error message that names another file or another command.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -9,8 +9,8 @@
 
 namespace kinalign {
 
-/// If a folder was named instead of a file: its first recording. If a disk can't
-/// read the file: `ddrescue`. Empty for any other failure.
+/// If the user named a folder instead of a file, the advice names the first recording in it. If the
+/// disk can't read the file, the advice is `ddrescue`. Empty for any other failure.
 std::vector<std::string> file_advice(const Error& error);
 
 }  // namespace kinalign

@@ -13,9 +13,9 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t meaning_column = 28;  // the column of the meanings
+constexpr std::size_t meaning_column = 28;  // the column in which the meanings of flags begin
 
-/// A name and its meaning in two columns. A long name has its meaning on the next line.
+/// A name and its meaning in two columns. After a long name the meaning begins on the next line.
 std::string line_of(const std::string& left, const std::string& meaning) {
   std::string line = "  " + left;
   if (line.size() + 2 > meaning_column) {
@@ -26,7 +26,7 @@ std::string line_of(const std::string& left, const std::string& meaning) {
   return line + wrapped(meaning, meaning_column) + "\n";
 }
 
-/// A part of a help page with its head; nothing if there are no fields.
+/// One part of a help page: its heading and its flags. Empty if there are no flags.
 std::string lines_of(const Fields& fields, const std::string& head) {
   if (fields.empty()) return "";
   std::string text = "\n" + head + "\n";
@@ -61,10 +61,11 @@ std::string wrapped(std::string_view text, std::size_t indent, std::size_t width
 
 std::string program_version() { return KINALIGN_VERSION; }
 
-/// The flag as a help page lists it; the default follows in brackets unless the meaning states it.
+/// The flag as a help page lists it. The default follows in brackets unless the meaning already
+/// states it.
 FlagText flag_text(const Field& field) {
   FlagText text{flag_of(field.name), field.meaning};
-  // The letters of command_line.cpp.
+  // The parser in command_line.cpp accepts these letters.
   if (field.name == "out") text.flag = "-o, --out";
   if (field.name == "quiet") text.flag = "-q, --quiet";
   if (field.name == "verbose") text.flag = "-v, --verbose";
@@ -95,15 +96,15 @@ std::string group_page(const std::string& group, const std::vector<Verb>& verbs)
          line_of(fmt::format("kinalign {} VERB --help", group), "help for a verb, with examples");
 }
 
-// The first line is a command that works, before anything is explained.
+// The page begins with a command that works, before any explanation.
 std::string overview(const std::vector<Verb>& verbs) {
   std::string text = "  kinalign align demo/recording.toml -o demo/mine.h5\n";
   const bool aligns = std::any_of(verbs.begin(), verbs.end(),
                                   [](const Verb& verb) { return verb.page.name == "align"; });
-  // A program without that verb, as tests have it, needs another example.
+  // Tests make programs without the verb `align`, so those pages need another example.
   if (!aligns) text = "  kinalign config\n";
   text += "\nAligns motion capture, Kinect v2 and IMU recordings.\n\nverbs\n";
-  std::string listed;  // the group of the verb before
+  std::string listed;  // the group of the previous verb
   for (const Verb& verb : verbs) {
     const std::string group = group_of(verb.page.name);
     if (group.empty()) text += line_of(verb.page.name, verb.page.summary);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes kinalign(1) with the man macros of roff (groff_man(7)).
+// Makes the man page kinalign(1) with the man macros of roff (groff_man(7)).
 #include "apps/cli/command_line.h"
 #include "apps/cli/field_text.h"
 #include "apps/cli/help.h"
@@ -10,16 +10,17 @@ namespace kinalign {
 
 namespace {
 
-/// The text with roff's special characters escaped.
+/// The text with the special characters of roff escaped.
 std::string literal(std::string_view text) {
   std::string out;
-  // A dot or an apostrophe at the beginning of a line would be a request of roff.
+  // A line that begins with a dot or an apostrophe would be a command for roff.
   if (text.starts_with('.') || text.starts_with('\'')) out += "\\&";
   for (const char c : text) {
     if (c == '\\') {
       out += "\\e";
     } else if (c == '-') {
-      // A plain hyphen may be set as another character, which can't be copied into a shell.
+      // roff may print a plain "-" as a typographic hyphen, which does not work when copied into a
+      // shell.
       out += "\\-";
     } else {
       out += c;
@@ -28,7 +29,7 @@ std::string literal(std::string_view text) {
   return out;
 }
 
-/// A flag or a code with its meaning, indented below it.
+/// A flag or an exit code, with its meaning indented below it.
 std::string item(std::string_view head, std::string_view text) {
   return fmt::format(".TP\n.B {}\n{}\n", literal(head), literal(text));
 }
@@ -42,8 +43,8 @@ std::string items(const Fields& fields) {
   return text;
 }
 
-/// The section of one verb. Flags that all verbs share are left out; a section of its own lists
-/// them.
+/// The section of one verb. The flags that all verbs share are left out, because they have their
+/// own section.
 std::string verb_section(const Page& page, const Usage& usage) {
   std::string text =
       fmt::format(".SS \"{}\"\n{}\n", literal(usage_line(page, usage)), literal(page.summary));
@@ -56,7 +57,7 @@ std::string verb_section(const Page& page, const Usage& usage) {
   Common common;
   const Page bare{page.name, "", "", {}, {}};
   Fields own = common_fields(common, page);
-  // common_fields() gives the verb's own choice first, then the flags of all verbs.
+  // common_fields() returns the flags that this verb chose first, then the flags of all verbs.
   own.resize(own.size() - common_fields(common, bare).size());
   return text + items(usage.flags) + items(usage.settings) + items(own);
 }

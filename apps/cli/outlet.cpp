@@ -15,9 +15,9 @@ namespace kinalign {
 
 namespace {
 
-/// Text is written once this number of bytes is held.
+/// put() writes the held text once it has this number of bytes.
 constexpr std::size_t enough = std::size_t{64} << 10;
-/// Text beyond this number of bytes is dropped if the reader is not waited for.
+/// After never_wait(), text beyond this number of held bytes is dropped.
 constexpr std::size_t most_waiting = std::size_t{1} << 20;
 
 }  // namespace
@@ -26,9 +26,9 @@ Outlet::~Outlet() {
   if (terminal_ >= 0) ::close(terminal_);
 }
 
-/// Opens the terminal anew with O_NONBLOCK. poll(2) reports room on a terminal even if a longer
-/// write would sleep, and O_NONBLOCK on the given descriptor would affect other programs that share
-/// it.
+/// Opens the terminal a second time, with O_NONBLOCK. poll(2) may report room on a terminal
+/// although a long write() would block. O_NONBLOCK on the given descriptor would also affect other
+/// programs that use the same terminal.
 void Outlet::never_wait() {
   waits_ = false;
   if (terminal_ >= 0 || ::isatty(fd_) == 0) return;
@@ -37,7 +37,7 @@ void Outlet::never_wait() {
 }
 
 void Outlet::put(std::string_view text) {
-  // Dropped whole, so that a reader never sees a part of a line.
+  // The text is dropped as a whole, so that a reader never sees a part of a line.
   if (!waits_ && held_.size() + text.size() > most_waiting) {
     ++dropped_;
     return;
@@ -51,7 +51,7 @@ bool Outlet::takes_more(std::chrono::milliseconds patience) const {
   return ::poll(&waiting, 1, static_cast<int>(patience.count())) == 1;  // write() reports faults
 }
 
-/// True if the disk was full but may have room again, and the output is not waited for.
+/// True if the disk was full at the last write and the text is kept for a later try.
 bool Outlet::is_full() const { return !waits_ && (fault_ == ENOSPC || fault_ == EDQUOT); }
 
 void Outlet::flush(std::chrono::milliseconds patience) {
@@ -60,7 +60,8 @@ void Outlet::flush(std::chrono::milliseconds patience) {
   std::string_view left = held_;
   while (!left.empty() && !gave_up()) {
     const auto still = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now());
-    // EAGAIN below is the second guard: another program may have filled the pipe in between.
+    // write() may still fail with EAGAIN (handled below), if another program filled the pipe
+    // meanwhile.
     if (!waits_ && !takes_more(std::max(still, std::chrono::milliseconds{0}))) break;
     // POSIX: a pipe that is writable takes up to PIPE_BUF bytes without blocking.
     const std::size_t piece = waits_ ? left.size() : std::min<std::size_t>(left.size(), PIPE_BUF);
@@ -71,12 +72,13 @@ void Outlet::flush(std::chrono::milliseconds patience) {
     if (put < 0) break;
     left.remove_prefix(static_cast<std::size_t>(put));
   }
-  // On a full disk the text stays: there may be room again later.
+  // If the disk is full, the text is kept, because there may be room later.
   held_.erase(0, gave_up() ? held_.size() : held_.size() - left.size());
 }
 
 std::uint64_t Outlet::take_dropped() {
-  // With less room, the report of dropped lines could itself be dropped.
+  // With less than half of the room free, the line that reports dropped lines could itself be
+  // dropped.
   return held_.size() < most_waiting / 2 ? std::exchange(dropped_, 0) : 0;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text on its way to a file descriptor; its reader is waited for, or never.
+// Writes text to a file descriptor. A slow reader either delays the program or makes text be
+// dropped.
 #pragma once
 
 #include <chrono>
@@ -10,8 +11,8 @@
 
 namespace kinalign {
 
-/// Text is held until 64 KiB are together or flush() is called. After a fault that is final, text
-/// is dropped in silence: fault() tells the caller.
+/// Holds text until there are 64 KiB or flush() is called. After a write has failed for good, all
+/// text is dropped without a message; fault() returns the reason.
 class Outlet {
  public:
   explicit Outlet(int fd) : fd_(fd) {}
@@ -19,23 +20,24 @@ class Outlet {
   Outlet& operator=(const Outlet&) = delete;
   ~Outlet();
 
-  /// From here on a reader that does not read (a full pipe, a stopped terminal) or a full disk
-  /// delays nothing. Up to 1 MiB of text waits for it; later texts are dropped whole and counted.
+  /// After this call a full pipe, a stopped terminal or a full disk no longer delays the program.
+  /// Up to 1 MiB of text is held; further texts are dropped whole and counted.
   void never_wait();
 
-  /// Holds the text until there is enough to write.
+  /// Adds the text to the held text, and writes if 64 KiB are held.
   void put(std::string_view text);
-  /// Writes the held text. If the reader is not waited for, the text that it does not take within
-  /// `patience` stays held.
+  /// Writes the held text. After never_wait(), text that the reader does not take within `patience`
+  /// stays held.
   void flush(std::chrono::milliseconds patience = {});
 
-  /// The texts dropped since the last call; 0 while there is no room to report them.
+  /// The number of texts dropped since the last call. Returns 0 while there is no room to report
+  /// them.
   std::uint64_t take_dropped();
   bool holds() const { return !held_.empty(); }
   int fd() const { return fd_; }
-  /// errno of the last write if it failed; 0 if it succeeded or there was none.
+  /// The errno of the last write if it failed; otherwise 0.
   int fault() const { return fault_; }
-  /// True if a write failed for good: nothing more is written.
+  /// True if a write has failed for good. Nothing more is written then.
   bool gave_up() const { return fault_ != 0 && !is_full(); }
 
  private:
@@ -44,7 +46,7 @@ class Outlet {
   int writes_to() const { return terminal_ >= 0 ? terminal_ : fd_; }
 
   int fd_;
-  int terminal_ = -1;  // the same terminal opened anew, so that writing never blocks
+  int terminal_ = -1;  // the same terminal opened a second time, with O_NONBLOCK
   bool waits_ = true;
   std::string held_;
   std::uint64_t dropped_ = 0;

@@ -16,7 +16,8 @@ namespace kinalign {
 
 namespace {
 
-/// Turns bad_alloc into an error: a file of a few bytes may ask for gigabytes.
+/// Turns a failed allocation (bad_alloc) into an error: a damaged file of a few bytes may ask for
+/// gigabytes.
 template <class Work>
 Result<int> with_memory(const Work& work) {
   try {
@@ -26,9 +27,9 @@ Result<int> with_memory(const Work& work) {
   }
 }
 
-/// One call of one verb: options, run, exit code.
-/// The verb calls back twice: take_words() sets its options, then enter() opens the console.
-/// Members below live as long as the verb's run, because Call refers to them.
+/// Runs one verb once: sets its options, runs it and returns the exit code. The verb calls back
+/// twice: take_words() sets the options, then enter() opens the console. Call holds references to
+/// the members below, so they live as long as the verb runs.
 class Run {
  public:
   Run(const Verb& verb, const std::vector<Verb>& verbs, std::vector<std::string> words,
@@ -38,17 +39,18 @@ class Run {
   int operator()() {
     const auto fill = [&](Usage& usage) { return take_words(usage); };
     const auto call = [&] { return enter(); };
-    // early_ counts if the options could not be set or a help page was printed.
+    // If the options could not be set or only a help page was printed, the exit code is early_.
     const Result<int> code = with_memory([&] { return verb_.enter(fill, call); });
     if (!filled_) return early_;
     return leave(code);
   }
 
  private:
-  /// Sets the options. True: go on; false: early_ is the exit code.
+  /// Sets the options. Returns true if the verb shall run; otherwise early_ is the exit code.
   bool take_words(Usage& usage) {
     const Result<bool> help = set_options(usage);
-    // A console of its own, since that of the verb is opened only when all options are known.
+    // The verb's console is opened later, when all options are known, so errors here need another
+    // console.
     Console console(surroundings_, common_, verb_.page.name);
     if (!help) {
       console.if_it_fails([&](const Error& error) { return advice(error); });
@@ -63,10 +65,11 @@ class Run {
     return filled_;
   }
 
-  // The advice for an error before the verb has run.
+  // The advice for an error that occurs before the verb runs.
   std::vector<std::string> advice(const Error& error) const {
     const std::string variable = surroundings_.variable("KINALIGN_CONFIG");
-    // A user who has forgotten the variable would look for the file in vain.
+    // The advice names the variable KINALIGN_CONFIG, because the user may have forgotten that it is
+    // set.
     const bool by_variable = common_.config.empty() && error.file == variable;
     if (unreadable_ && by_variable) return {"the variable KINALIGN_CONFIG names this file"};
     if (unreadable_) return {};
@@ -80,14 +83,14 @@ class Run {
     return parse_settings(KA_TRY(found));
   }
 
-  /// Sets the options from the flags, then files, then the environment, each only where no stronger
-  /// source has. True if the help page was asked for.
+  /// Sets the options from flags, settings files and environment variables. A source never
+  /// overrides a stronger one. Returns true if the user asked for the help page.
   Result<bool> set_options(Usage& usage) {
     const Fields common = common_fields(common_, verb_.page);
-    // Flags come first, because --config names a file of settings. apply_settings() does not
-    // override them.
+    // Flags are read first, because --config names a settings file. apply_settings() does not
+    // override flags.
     Parsed parsed = KA_TRY(parse_words(words_, usage, common));
-    // Other flags beside --help must not silence the page.
+    // Other flags, such as --quiet, must not suppress the help page.
     if (parsed.help) {
       common_ = Common{};
       return true;
@@ -103,19 +106,20 @@ class Run {
   }
 
   Call enter() {
-    // Not before: while the options are set, Ctrl-C may end the program at once.
+    // Signals are taken only from here on: while the options are set, Ctrl-C may end the program at
+    // once.
     take_signals();
     console_.emplace(surroundings_, common_, verb_.page.name);
-    // hardware_concurrency() is 0 if it is not known.
+    // hardware_concurrency() returns 0 if the number of processors is not known.
     const auto processors = std::max(1U, std::thread::hardware_concurrency());
     const auto jobs = common_.jobs > 0 ? static_cast<std::size_t>(common_.jobs) : processors;
     return Call{common_, sources_, jobs, *console_, verbs_, surroundings_};
   }
 
-  // The exit code of a verb that has run. Text that stdout did not take is a failure, too.
+  // The exit code after the verb has run. Text that stdout refused counts as a failure.
   int leave(const Result<int>& code) {
-    // A verb that failed because it was stopped needs no message of its own. One that still
-    // succeeded keeps its result.
+    // If Ctrl-C stopped the verb, the verb's own error is not printed. A verb that succeeded in
+    // spite of Ctrl-C keeps its exit code.
     if (interrupted() && !code) {
       console_->complain("kinalign " + verb_.page.name + ": stopped; no unfinished file is left");
       return stopped;
@@ -142,7 +146,7 @@ class Run {
   int early_ = done;
 };
 
-/// Prints `text` on stdout; as an answer to wrong use on stderr.
+/// Prints `text` on stdout, or on stderr if the command was wrong.
 int say(const std::string& text, ExitCode code, const Surroundings& surroundings) {
   const Common common;
   Console console(surroundings, common, "");
@@ -150,15 +154,15 @@ int say(const std::string& text, ExitCode code, const Surroundings& surroundings
     console.put(text);
     return console.finish() ? done : failed;
   }
-  // note() adds a line end of its own.
+  // note() adds a line end, so the text's own line ends are removed.
   console.note(text.substr(0, text.find_last_not_of('\n') + 1));
   return code;
 }
 
-/// Reports a word that is no verb, with the most similar known one.
+/// Reports a word that is no verb, and suggests the most similar verb.
 int unknown_verb(const std::vector<Verb>& verbs, const std::string& word,
                  const Surroundings& surroundings) {
-  // Words that are no verbs but are accepted in the same place.
+  // Besides verbs, these words may also stand first.
   std::vector<std::string> known{"--help", "--version", "help"};
   for (const Verb& verb : verbs) known.push_back(verb.page.name);
   const Common common;
@@ -189,7 +193,7 @@ void join_group(const std::vector<Verb>& verbs, std::vector<std::string>& words)
 int run_program(const std::vector<Verb>& verbs, const std::vector<std::string>& given,
                 const Surroundings& surroundings) {
   std::vector<std::string> words = given;
-  // Nothing was asked for, so the overview is an answer to wrong use.
+  // A command without words is wrong use, so the overview goes to stderr.
   if (words.empty()) return say(overview(verbs), wrong_use, surroundings);
   if (words.front() == "--version") {
     return say("kinalign " + program_version() + "\n", done, surroundings);

@@ -15,26 +15,26 @@ namespace kinalign {
 
 namespace {
 
-/// A larger settings file is refused.
+/// Larger settings files are refused.
 constexpr std::size_t most_bytes = std::size_t{1} << 20;
 
-/// The error for a table within a table. Only devices of a lab may have one; people often give a
-/// manifest instead of a lab's file.
+/// The error for a table within a table. Only the devices of a lab file may have such tables.
+/// People often give a manifest where a lab file is expected.
 Failure no_table(const Value& value) {
   if (value.path.starts_with("stream.") || value.path.starts_with("space.")) {
     return at(value,
               Error{"", 0, "settings, or a lab's devices",
                     "[" + shown(value.path) + "], which belongs in a manifest for kinalign align"});
   }
-  const bool in_list = value.path == value.key;  // [[device]]
+  const bool in_list = value.path == value.key;  // a list of tables: [[device]]
   return at(value, Error{"", 0,
                          "settings, or a lab's device as [device." +
                              (in_list ? "NAME" : shown(value.key)) + "]",
                          in_list ? "[[" + shown(value.key) + "]]" : "[" + shown(value.path) + "]"});
 }
 
-/// A TOML value as text, in the form that set_field() reads.
-/// All sources give text, so one function checks range and choices of all of them.
+/// A TOML value as text that set_field() can read. Flags, variables and files all give text, so
+/// set_field() checks the range and choices for all of them.
 Result<std::string> scalar_text(const Value& value) {
   using Kind = Value::Kind;
   if (value.kind == Kind::text) return text_of(value);
@@ -46,7 +46,7 @@ Result<std::string> scalar_text(const Value& value) {
             Error{"", 0, "a number, a text or true or false", "something else for " + value.key});
 }
 
-/// The values of a key; a list gives several.
+/// The setting that one TOML value gives. A list gives several values.
 Result<Setting> setting_of(const std::string& verb, const Value& value) {
   Setting setting{verb, value.key, {}, value.line};
   if (value.kind != Value::Kind::list) {
@@ -57,7 +57,7 @@ Result<Setting> setting_of(const std::string& verb, const Value& value) {
   return setting;
 }
 
-/// Adds a setting of every verb, or the settings of a verb's table.
+/// Adds one setting that counts for every verb, or all settings in the table of one verb.
 Result<void> add_settings(const Value& value, SettingsFile& file) {
   if (!value.is_table()) {
     file.settings.push_back(KA_TRY(setting_of("", value)));
@@ -71,7 +71,8 @@ Result<void> add_settings(const Value& value, SettingsFile& file) {
 
 bool there(const std::string& path) { return ::access(path.c_str(), F_OK) == 0; }
 
-/// By the XDG Base Directory Specification: $XDG_CONFIG_HOME, else ~/.config.
+/// The user's settings file. The XDG Base Directory Specification puts it in $XDG_CONFIG_HOME, or
+/// in ~/.config if that variable is empty.
 std::string users_file(const Surroundings& surroundings) {
   const std::string config = surroundings.variable("XDG_CONFIG_HOME");
   if (!config.empty()) return config + "/kinalign/config.toml";
@@ -79,7 +80,8 @@ std::string users_file(const Surroundings& surroundings) {
   return home.empty() ? "" : home + "/.config/kinalign/config.toml";
 }
 
-/// Goes up to the root of the file system, as git looks for its repository.
+/// Searches `folder` and all folders above it for kinalign.toml, as git searches for its
+/// repository.
 std::string projects_file(std::string folder) {
   for (;;) {
     std::string path = folder + (folder.ends_with('/') ? "" : "/") + "kinalign.toml";
@@ -92,7 +94,7 @@ std::string projects_file(std::string folder) {
 
 Result<void> set_all(const Field& field, const std::vector<std::string>& values) {
   auto* const* many = std::get_if<std::vector<std::string>*>(&field.value);
-  // A list in a file replaces the list of a weaker source; it does not add to it.
+  // A list in a file replaces the list of a weaker source and does not add to it.
   if (many != nullptr) (*many)->clear();
   if (many == nullptr && values.size() != 1) {
     return Failure(Error{"", 0, "one value for " + field.name, std::to_string(values.size())});
@@ -109,7 +111,7 @@ Failure unknown(const SettingsFile& file, const Setting& setting,
                        shown(word)});
 }
 
-/// Refuses unknown names. Settings of other verbs are only checked for the verb's name.
+/// Refuses unknown names. For settings of other verbs only the name of the verb is checked.
 Result<void> check_name(const SettingsFile& file, const Setting& setting, const Settable& settable,
                         const std::vector<Verb>& verbs) {
   std::vector<std::string> known;
@@ -124,7 +126,8 @@ Result<void> check_name(const SettingsFile& file, const Setting& setting, const 
     known.emplace_back("device");
     return unknown(file, setting, known, "a verb");
   }
-  // One file serves all verbs, and only the running verb's fields are known here.
+  // One settings file serves all verbs, but only the names of the running verb's settings are known
+  // here.
   if (setting.verb != settable.page.name ||
       find_named(settable.settings, setting.name) != nullptr) {
     return {};
@@ -140,7 +143,8 @@ Result<SettingsFile> parse_settings(const SettingsText& file) {
   SettingsFile out{file.path, file.source, {}};
   KA_TRY(read_toml(file.text, file.path, [&](const Value& top) -> Result<void> {
     for (const Value& value : top.items) {
-      // A lab file is a settings file that also describes devices.
+      // A lab file is a settings file that also describes devices. documents/lab_toml.h reads the
+      // devices.
       if (value.key == "device" && value.is_table()) continue;  // documents/lab_toml.h reads them
       KA_TRY(add_settings(value, out));
     }
@@ -184,7 +188,7 @@ Result<void> apply_settings(const SettingsFile& file, const Settable& settable,
     const Field* field = find_named(fields, setting.name);
     if (field == nullptr) continue;  // a common setting that this verb does not take
     const auto known = sources.find(setting.name);
-    // Files are applied from the weakest on, and flags were set before them.
+    // The weakest file is applied first. Flags were set before all files and are kept.
     if (known != sources.end() && known->second > file.source) continue;
     KA_TRY(set_all(*field, setting.values).map_error([&](Error error) {
       error.file = file.path;
@@ -196,13 +200,13 @@ Result<void> apply_settings(const SettingsFile& file, const Settable& settable,
   return {};
 }
 
-/// An empty variable counts as not set. The environment wins over files, and a flag over the
-/// environment.
+/// Sets options from environment variables. A variable overrides files, and a flag overrides a
+/// variable. An empty variable counts as not set.
 Result<void> apply_environment(const Surroundings& surroundings, const Settable& settable,
                                Sources& sources) {
   for (const Fields* fields : {&settable.settings, &settable.common}) {
     for (const Field& field : *fields) {
-      // The others, such as out and force, can be given on the command line only.
+      // Other common options, such as out and force, can be given on the command line only.
       if (fields == &settable.common && !is_common_setting(field.name)) continue;
       const auto known = sources.find(field.name);
       if (known != sources.end() && known->second == Source::flag) continue;
@@ -218,9 +222,8 @@ Result<void> apply_environment(const Surroundings& surroundings, const Settable&
   return {};
 }
 
-/// Reads the files again, since options keep no line numbers.
-/// Called by verbs whose later checks find a fault in a setting, so that the message names its
-/// line.
+/// Reads the settings files again, because options do not store line numbers. Verbs call it when a
+/// later check finds a wrong setting, so that the message names the setting's line.
 SettingPlace setting_place(const std::string& verb, const std::string& name, const Call& call) {
   const auto source = call.sources.find(name);
   if (source == call.sources.end() || source->second == Source::flag) return {};

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options that need not be typed each time. The order of precedence: flags, KINALIGN_<NAME> in the
-// environment, a manifest's [align], the project's kinalign.toml (in the current folder or the
-// nearest one above it), the user's ~/.config/kinalign/config.toml.
+// Settings: options that need not be typed each time. The strongest source wins. From strong to
+// weak: flags, the variables KINALIGN_<NAME>, the [align] table of a manifest, the project's
+// kinalign.toml (in the current folder or the nearest folder above), the user's
+// ~/.config/kinalign/config.toml.
 #pragma once
 
 #include "apps/cli/verb.h"
@@ -13,9 +14,9 @@
 
 namespace kinalign {
 
-/// A key of a settings file with its line, so that an error can name both.
+/// A setting in a file, with its line, so that an error can name both.
 struct Setting {
-  std::string verb;  // the table that it stands in; empty: for every verb
+  std::string verb;  // the table that the key stands in; empty: the setting counts for every verb
   std::string name;
   std::vector<std::string> values;
   std::int64_t line = 0;
@@ -34,41 +35,41 @@ struct SettingsText {
   std::string text;
 };
 
-/// The path of the project's file: `config`, else the value of KINALIGN_CONFIG, else kinalign.toml
-/// in the current folder or above it. Empty if there is none.
+/// The path of the project's settings file: `config`, else the value of KINALIGN_CONFIG, else
+/// kinalign.toml in the current folder or a folder above it. Empty if there is no such file.
 std::string project_settings(const Surroundings& surroundings, const std::string& config);
 
-/// The user's file and the project's, if they exist. `config` replaces the project's file unless it
-/// is empty. Fails if a file can't be read.
-/// The user's file comes first, so that the project's wins.
+/// Reads the user's and the project's settings files, if they exist. A `config` that is not empty
+/// replaces the project's file. Fails if a file can't be read. The user's file comes first, so that
+/// the project's file overrides it.
 Result<std::vector<SettingsText>> find_settings(const Surroundings& surroundings,
                                                 const std::string& config);
 
-/// Reads settings: `jobs = 4` for every verb, `[align]` with `gap_ms = 50` for one. Any other
-/// content is wrong use.
+/// Parses settings: `jobs = 4` counts for every verb, `gap_ms = 50` below `[align]` for one verb.
+/// Any other content is wrong use.
 Result<SettingsFile> parse_settings(const SettingsText& file);
 Result<std::vector<SettingsFile>> parse_settings(const std::vector<SettingsText>& files);
 
-/// The pages to read after an error in a settings file.
+/// The manual pages that a message names after an error in a settings file.
 inline constexpr std::string_view settings_pages =
     "docs/commands.md describes a settings file, docs/formats/lab_toml.md describes a lab file";
 
-/// The options that a verb's table and the beginning of a file may set.
+/// The options that settings files and variables may set for one verb.
 struct Settable {
   const Page& page;
-  const Fields& settings;  // the verb's
+  const Fields& settings;  // the verb's own settings
   const Fields& common;
 };
 
-/// Sets the options that no stronger source has set, and adds them to `sources`. Fails on unknown
-/// names.
+/// Sets the options that no stronger source has set, and notes their source in `sources`. Fails if
+/// the file has an unknown name.
 Result<void> apply_settings(const SettingsFile& file, const Settable& settable,
                             const std::vector<Verb>& verbs, Sources& sources);
 Result<void> apply_environment(const Surroundings& surroundings, const Settable& settable,
                                Sources& sources);
 
-/// The place that sets an option of the verb without a flag: "lab.toml" with the line, or
-/// "KINALIGN_X". No file if a flag or nothing sets it.
+/// The place that sets the verb's option: a settings file with the line, or a variable
+/// "KINALIGN_X". The file is empty if a flag sets the option, or nothing does.
 struct SettingPlace {
   std::string file;
   std::int64_t line = 0;

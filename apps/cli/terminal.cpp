@@ -9,8 +9,8 @@ namespace kinalign {
 
 namespace {
 
-/// The column in which a line's text begins: after "  space  " or "warning  ".
-/// A column too far right would leave no room, so those lines are indented by two.
+/// The column in which the rest of a broken line begins: after "  space  " or "warning  ". If that
+/// column is too far right, the rest is indented by two.
 std::size_t text_column(std::string_view line) {
   constexpr std::size_t most = 24;
   const std::size_t begin = std::min(line.find_first_not_of(' '), line.size());
@@ -20,7 +20,7 @@ std::size_t text_column(std::string_view line) {
   return column < most ? column : begin + 2;
 }
 
-/// Breaks one line; a line is left as it is if it fits or the terminal is too narrow for the
+/// Breaks one line. The line stays as it is if it fits, or if the terminal is too narrow for the
 /// indent.
 std::string broken_line(std::string_view line, std::size_t width) {
   const std::size_t indent = text_column(line);
@@ -31,7 +31,7 @@ std::string broken_line(std::string_view line, std::size_t width) {
   while (!line.empty()) {
     const std::size_t blanks = std::min(line.find_first_not_of(' '), line.size());
     const std::string_view word = line.substr(blanks, line.find(' ', blanks) - blanks);
-    // A word that is wider than the room stays whole, even if it is cut by the terminal.
+    // A word wider than the terminal stays whole, even if the terminal cuts it.
     const bool fits = at + blanks + places(word) <= width || at <= indent;
     out += fits ? std::string(blanks, ' ') : "\n" + std::string(indent, ' ');
     at = (fits ? at + blanks : indent) + places(word);
@@ -47,7 +47,7 @@ TerminalSize size_of(int fd) {
   winsize reported{};
   TerminalSize size;
   if (::ioctl(fd, TIOCGWINSZ, &reported) != 0) return size;
-  // Some terminals report 0 rows or columns.
+  // Some terminals report 0 rows or columns; the defaults then stay.
   if (reported.ws_row > 1) size.rows = reported.ws_row;
   if (reported.ws_col > 1) size.columns = reported.ws_col;
   return size;
@@ -63,9 +63,10 @@ std::size_t places(std::string_view text) {
   std::size_t count = 0;
   bool colour = false;
   for (const char c : text) {
-    // Colours are the only escape sequences that a text has here; each ends with an m.
+    // Colours are the only escape sequences in these texts. Each ends with an m.
     if (c == '\x1b') colour = true;
-    const bool goes_on = (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;  // within a character
+    // not the first byte of a UTF-8 character
+    const bool goes_on = (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
     if (!colour && !goes_on) ++count;
     if (c == 'm') colour = false;
   }

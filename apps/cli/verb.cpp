@@ -11,7 +11,8 @@ namespace kinalign {
 
 namespace {
 
-// Both fields are of one structure of options, so they have one type.
+// Copies the value of an option to the same option of another copy of the structure, so both have
+// one type.
 void copy_value(const Field& from, const Field& onto) {
   assert(from.value.index() == onto.value.index());
   std::visit(
@@ -51,7 +52,7 @@ std::string group_of(const std::string& verb_name) {
   return blank == std::string::npos ? "" : verb_name.substr(0, blank);
 }
 
-// A group is nothing but the first word that several verbs share.
+// Verbs that share their first word form a group.
 std::vector<std::string> groups_of(const std::vector<Verb>& verbs) {
   std::vector<std::string> groups;
   for (const Verb& verb : verbs) {
@@ -70,7 +71,7 @@ std::vector<std::string> names_in(const std::string& group, const std::vector<Ve
   return names;
 }
 
-// `fill` returns false, so the verb is never run and `call` never called.
+// `fill` returns false here, so the verb is not run and `call` is never called.
 void describe_verb(const Verb& verb, const std::function<void(const Usage&)>& use) {
   const auto look = [&](const Usage& usage) {
     use(usage);
@@ -82,7 +83,7 @@ void describe_verb(const Verb& verb, const std::function<void(const Usage&)>& us
 void copy_given(const Fields& from, const Fields& onto, const Sources& sources, Source least) {
   for (const Field& field : from) {
     const auto source = sources.find(field.name);
-    // An option that nothing has set must not overwrite what the manifest says.
+    // An option that no source has set must not overwrite the value from the manifest.
     if (source == sources.end() || source->second < least) continue;
     for (const Field& other : onto) {
       if (other.name == field.name) copy_value(field, other);
