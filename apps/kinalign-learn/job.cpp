@@ -33,16 +33,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// docs/training.md states this limit.
-constexpr std::size_t least_rows = 8;  // frames; shorter stretches are left out
+// Shorter stretches of frames are left out. docs/training.md states this limit.
+constexpr std::size_t least_rows = 8;  // frames
 
-/// A whole file in memory; models, windows and checkpoints are read in this way.
+/// Reads a whole file (a model, windows or a checkpoint) into memory.
 Result<std::string> bytes_of(const std::string& path) {
   PosixFiles files;
   return read_whole(files, path, std::numeric_limits<std::size_t>::max());
 }
 
-/// A kill leaves the old file or the new one.
+/// Writes a file so that a kill meanwhile leaves the complete old file or the complete new one.
 Result<void> write_file(const std::string& path, const std::string& bytes) {
   PosixFiles files;
   return write_whole(files, path, bytes, Overwrite::yes);
@@ -59,8 +59,8 @@ Result<TrainingOptions> options_of(const std::string& method, const std::string&
   return Failure(Error{name, 0, "a known method", method});
 }
 
-/// A model that goes on learns with a fifth of the rate and at most 300 steps, so that it forgets
-/// little.
+/// Sets gentle options for continuing a trained model: a fifth of the learning rate and at most 300
+/// steps. The model then forgets little of the earlier data.
 void go_on_gently(TrainingOptions& options) {
   options.rate *= 0.2;
   options.steps = std::min<std::int64_t>(options.steps, 300);
@@ -74,7 +74,7 @@ ProcessPlace place_of(const Json& json) {
           .interface = json.value("interface", "")};
 }
 
-/// Only these options can be set by a job; all others belong to the method.
+/// Reads the options that a job may set. All other options are fixed by the method.
 void read_options(const Json& json, TrainingOptions& out) {
   out.steps = json.value("steps", out.steps);
   out.rate = json.value("rate", out.rate);
@@ -83,8 +83,8 @@ void read_options(const Json& json, TrainingOptions& out) {
   out.patience = json.value("patience", out.patience);
 }
 
-/// Writes the log as CSV, as a curve and as events for TensorBoard.
-/// All three files are written anew from all points, so a run that was continued has one whole log.
+/// Writes the log of the training in three files: CSV, a curve and events for TensorBoard. Each
+/// file is written anew from all points, so the log of a continued run is complete.
 Result<void> save_log(const TrainingJob& job, const std::vector<TrainingPoint>& points) {
   if (job.log.empty()) return {};
   KA_TRY(write_file(job.log, csv_of(points)));
@@ -93,8 +93,8 @@ Result<void> save_log(const TrainingJob& job, const std::vector<TrainingPoint>& 
   return write_file(folder / "events.out.tfevents.0.kinalign", events_of(points));
 }
 
-/// Prints progress as JSON lines, at most two a second, and the last one.
-/// The returned function is called after each step, which may take milliseconds.
+/// Prints progress as JSON lines: at most two a second, and always the last one. The returned
+/// function is called after each training step, which may take only milliseconds.
 Progress progress_lines() {
   using Clock = std::chrono::steady_clock;
   auto last = std::make_shared<Clock::time_point>();
@@ -103,13 +103,14 @@ Progress progress_lines() {
     if (done != total && now - *last < std::chrono::milliseconds(500)) return true;
     *last = now;
     std::cout << Json{{"what", what}, {"done", done}, {"total", total}}.dump() << std::endl;
-    // kinalign train reads these lines; if it has ended, the pipe is broken.
-    return static_cast<bool>(std::cout);  // the parent program is gone: stop
+    // `kinalign train` reads these lines. If it has ended, the pipe is broken and the training
+    // stops.
+    return static_cast<bool>(std::cout);  // false: stop
   };
 }
 
-/// Counts of the data that a model learnt from.
-/// Stated in the model, so that a reader knows how much data is behind it.
+/// Counts of the training data. The model's file states them, so that a reader knows on how much
+/// data the model was trained.
 struct LearntFrom {
   std::size_t stretches = 0, frames = 0;
   std::set<std::string> subjects;
@@ -121,12 +122,12 @@ struct LearntFrom {
   }
 };
 
-/// States in the model what it was trained on and with which settings. `before`: the statement of
-/// the model that it went on from; "" if there is none.
+/// Writes into the model's facts which data and which settings it was trained with. `before`: the
+/// same facts of the model whose training was continued; "" if there is none.
 void state_training(const TrainingJob& job, const WindowsFacts& facts, const LearntFrom& from,
                     const std::string& before, ModelFacts& model) {
-  // Data set, licence and hash go along with the weights, so a model's origin can always be
-  // checked.
+  // The data's name, licence and hash are stored beside the weights, so that the model's origin can
+  // be checked.
   Json out{{"data",
             {{{"name", facts.dataset},
               {"licence", facts.licence},
@@ -142,30 +143,32 @@ void state_training(const TrainingJob& job, const WindowsFacts& facts, const Lea
   if (job.hand_weight > 0.0) out["hand_weight"] = job.hand_weight;
   if (job.vary_speed > 0.0) out["vary_speed"] = job.vary_speed;
   if (job.vary_size > 0.0) out["vary_size"] = job.vary_size;
-  // The whole statement of the earlier model is nested: its data count, too.
+  // The facts of the earlier model are nested here, because its data, too, shaped the weights.
   if (!job.from.empty()) out["from"] = Json::parse(before, nullptr, false);
   model.software = "kinalign " KINALIGN_VERSION;
   model.training = out.dump();
 }
 
-/// The model to go on from. Absent if the job names none; fails if it is of another method.
+/// Reads the model whose training is continued. Empty if the job names no model. Fails if that
+/// model has another method.
 template <class Model, class Read>
 Result<std::optional<Model>> model_before(const TrainingJob& job, Read read) {
   if (job.from.empty()) return std::optional<Model>();
-  // Another method has another network, whose weights would not fit.
+  // Another method has another network, into which the weights would not fit.
   Model model = KA_TRY(read(KA_TRY(bytes_of(job.from)), job.from));
   if (model.facts.method == job.method) return std::optional<Model>(std::move(model));
   return Failure(Error{job.from, 0, "a model of the method " + job.method,
                        "a model of the method " + shown(model.facts.method)});
 }
 
-/// Weights can be continued only if each of them means the same as before.
+/// The error if the job's network differs from the earlier model's: its weights can't be used then.
 Failure cannot_go_on(const TrainingJob& job, const std::string& expected) {
   return Failure(Error{job.from, 0, expected, "another one"});
 }
 
-/// Divides pairs by the parts of the file's split. Without a split, all are trained on.
-/// A part with any other name, such as test, is neither learnt nor judged.
+/// Divides pairs of input and truth by the split in the file of windows. Without a split, all pairs
+/// are for training. A part with another name, such as test, is neither trained on nor used to
+/// judge.
 DividedPairs divide(std::vector<Pair> all) {
   DividedPairs out;
   for (Pair& pair : all) {
@@ -175,10 +178,9 @@ DividedPairs divide(std::vector<Pair> all) {
   return out;
 }
 
-/// Replaces the file's parts by those of the job's lists of takes: train, validation, and test for
-/// all others. Without a list the file's parts stay.
-/// `kinalign eval` and `kinalign benchmark` choose takes in this way, without a file of windows for
-/// each fold.
+/// Replaces the split of the file by the job's lists of takes: train, validation, and test for all
+/// other takes. Without lists the file's split stays. `kinalign eval` and `kinalign benchmark` use
+/// the lists, so that all folds share one file of windows.
 void divide_by_lists(const TrainingJob& job, Windows& windows) {
   if (job.learn.empty()) return;
   const auto holds = [](const std::vector<std::string>& list, const std::string& name) {
@@ -191,24 +193,25 @@ void divide_by_lists(const TrainingJob& job, Windows& windows) {
   }
 }
 
-/// The bytes of a model's file, and the course of its training.
-/// The file is written only after all processes have finished.
+/// The result of a training: the bytes of the model's file and the points of the log. The file
+/// itself is written only after all processes have finished.
 struct Fitted {
   std::string model;
   std::vector<TrainingPoint> points;
 };
 
-// Every word but "cuda" means the processor; main() has checked that there is a GPU.
+// Each device other than "cuda" is the processor. main() has checked that there is a GPU.
 FitOptions fit_options(const TrainingJob& job) {
   return {job.options, job.device == "cuda" ? torch::Device(torch::kCUDA) : torch::kCPU};
 }
 
-/// The pairs with the file's joints, or with those of the model that the training goes on from.
+/// The training pairs, with the joints of the model whose training is continued, else with all
+/// joints of the file.
 Result<Pairs> pairs_to_learn(const TrainingJob& job, const Windows& windows,
                              const std::optional<DenoiseModel>& from) {
   if (!from) return pairs_of(windows, job.input, job.truth, least_rows);
   const DenoiseLayout& layout = from->layout;
-  // A network that has learnt speeds at one rate is wrong at another.
+  // A network learns speeds at one frame rate; at another rate they would be wrong.
   if (std::abs(windows.facts.rate_hz - layout.rate_hz) > 0.01 * layout.rate_hz) {
     return Failure(Error{job.windows, 0, "windows at the model's rate", "another rate"});
   }
@@ -216,12 +219,13 @@ Result<Pairs> pairs_to_learn(const TrainingJob& job, const Windows& windows,
   return pairs_for(windows, job.input, job.truth, joints, least_rows);
 }
 
-/// Trains a model that cleans a Kinect.
+/// Trains a model that cleans the joints of a Kinect.
 Result<Fitted> fit_denoise_job(const TrainingJob& job, DenoiseMethod method, const Windows& windows,
                                TrainingState state, const TrainingHooks& hooks) {
   if (job.hand_weight > 0.0) method.training.loss.hands = job.hand_weight;
   const auto from = KA_TRY(model_before<DenoiseModel>(job, read_denoise_model));
-  // The second network of such a method would have to go on, too, and bra-p-plain's file lacks it.
+  // A method with a perceptual loss has a second network. A model's file does not contain it, so
+  // such a training can't be continued.
   if (from && method.perceptual) {
     return Failure(
         Error{job.from, 0, "a method with one network, to continue training", job.method});
@@ -236,21 +240,21 @@ Result<Fitted> fit_denoise_job(const TrainingJob& job, DenoiseMethod method, con
   return Fitted{write_denoise_model(fit.model), std::move(fit.points)};
 }
 
-/// The method's variety, with the values that the job sets.
-/// 0 in the job means that the method's own value stays.
+/// The random changes of the training data: the method's values, replaced by values of the job that
+/// are above 0.
 Variety variety_of(const TrainingJob& job, Variety own) {
   if (job.vary_speed > 0.0) own.speed = job.vary_speed;
   if (job.vary_size > 0.0) own.size = job.vary_size;
   return own;
 }
 
-/// Trains a model for poses. The first process also computes its marks on the test part.
+/// Trains a model for poses. The first process also computes the model's marks on the test part.
 Result<Fitted> fit_pose_job(const TrainingJob& job, PoseMethod method, const Windows& windows,
                             TrainingState state, const TrainingHooks& hooks) {
   method.training.variety = variety_of(job, method.training.variety);
   const auto from = KA_TRY(model_before<PoseModel>(job, read_pose_model));
   const PoseData data = KA_TRY(pose_data(windows, job.truth, job.nodes));
-  // A method that is solved and not trained (wouda) has nothing to go on from.
+  // The method wouda is solved and not trained, so there is no training to continue.
   if (from && (method.begin != nullptr || from->layout.nodes != data.nodes)) {
     return cannot_go_on(job, "a network of the same nodes");
   }
@@ -265,7 +269,7 @@ Result<Fitted> fit_pose_job(const TrainingJob& job, PoseMethod method, const Win
   return Fitted{write_pose_model(fit.model), std::move(fit.points)};
 }
 
-/// Trains a model for fusion. The first process also computes its marks on the test part.
+/// Trains a model for fusion. The first process also computes the model's marks on the test part.
 Result<Fitted> fit_fuse_job(const TrainingJob& job, FuseMethod method, const Windows& windows,
                             TrainingState state, const TrainingHooks& hooks) {
   method.training.variety = variety_of(job, method.training.variety);
@@ -286,7 +290,7 @@ Result<Fitted> fit_fuse_job(const TrainingJob& job, FuseMethod method, const Win
   return Fitted{write_fuse_model(fit.model), std::move(fit.points)};
 }
 
-/// One body of the file, found by its number.
+/// The body with this number in a file of bodies.
 Result<JointFrames> body_of(const TensorFile& file, const std::string& number, std::size_t joints,
                             const std::string& name) {
   const auto positions = file.tensors.find(number + ".positions");
@@ -302,17 +306,18 @@ Result<JointFrames> body_of(const TensorFile& file, const std::string& number, s
                        "no such arrays, or arrays of other sizes"});
 }
 
-/// Writes the projected answers to all bodies of a file. The last line of output states the mean
-/// errors of the constraints before and after.
+/// Projects the model's answers for all bodies of a file and writes them. The last line of output
+/// states the mean errors of the constraints before and after the projection.
 Result<void> project_bodies(const TrainingJob& job) {
-  // Runs in this program and not in kinalign, because each step of the projection needs gradients.
+  // The projection runs in this program, because each of its steps needs gradients. They come from
+  // LibTorch, which the program kinalign does not contain.
   const DenoiseModel model = KA_TRY(read_denoise_model(KA_TRY(bytes_of(job.project)), job.project));
   const TensorFile bodies = KA_TRY(read_safetensors(KA_TRY(bytes_of(job.bodies)), job.bodies));
   const std::size_t joints = model.layout.inputs.size(), count = bodies.tensors.size() / 2;
   const Progress progress = progress_lines();
   TensorFile out;
   ConstraintErrors before, after;
-  // Means over all bodies of the file.
+  // Each sum becomes the mean over all bodies of the file.
   const auto add = [&](ConstraintErrors& sum, const ConstraintErrors& one) {
     const double share = 1.0 / static_cast<double>(count);
     sum.feet_cm += share * one.feet_cm;
@@ -339,14 +344,14 @@ Result<void> project_bodies(const TrainingJob& job) {
   return {};
 }
 
-/// Trains by the task of the method, which read_job() has checked.
-/// The lists must outlive the pointers that find_named() gives.
+/// Trains a model for the task of the job's method; read_job() has checked that the method exists.
+/// The lists must outlive the pointers that find_named() returns.
 Result<Fitted> fit_job(const TrainingJob& job, const Windows& windows, TrainingState state,
                        const TrainingHooks& hooks) {
   const auto denoise = denoise_methods();
   const auto pose = pose_methods();
   const auto fuse = fuse_methods();
-  // The order of the lists does not matter, since names are unique.
+  // The three lists may be searched in any order, since each name occurs in one list only.
   if (const auto* method = find_named(pose, job.method)) {
     return fit_pose_job(job, *method, windows, std::move(state), hooks);
   }
@@ -358,7 +363,7 @@ Result<Fitted> fit_job(const TrainingJob& job, const Windows& windows, TrainingS
 
 }  // namespace
 
-/// A job projects, evaluates or trains; each kind reads only the members that it needs.
+/// Each of the three kinds of job reads only the members that it needs.
 Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object() || json.value("schema", "") != "kinalign.training_job/1") {
@@ -380,7 +385,7 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
     if (json.contains("learn")) json.at("learn").get_to(out.learn);
     if (json.contains("judge")) json.at("judge").get_to(out.judge);
     out.evaluate = json.value("evaluate", "");
-    // An evaluated model states its own method, so the job need not name one.
+    // The file of an evaluated model states its method, so the job need not.
     if (!out.evaluate.empty()) return out;
     out.method = json.at("method").get<std::string>();
     out.out = json.at("out").get<std::string>();
@@ -396,7 +401,7 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
     out.from = json.value("from", "");
     if (json.contains("place")) out.place = place_of(json.at("place"));
     out.options = KA_TRY(options_of(out.method, name));
-    // Before the job's own options, so that these win.
+    // These options are set before those of the job, so that the job's options override them.
     if (!out.from.empty()) go_on_gently(out.options);
     if (json.contains("options")) read_options(json.at("options"), out.options);
   } catch (const Json::exception& fault) {
@@ -407,7 +412,7 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
 
 Result<void> run_job(const TrainingJob& job) {
   if (!job.project.empty()) return project_bodies(job);
-  // Kept in memory: the hash at the end is that of exactly the bytes that were learnt from.
+  // The bytes stay in memory, so that the hash is that of exactly the bytes that were trained on.
   const std::string bytes = KA_TRY(bytes_of(job.windows));
   Windows windows = KA_TRY(read_windows(bytes, job.windows));
   divide_by_lists(job, windows);
@@ -415,17 +420,18 @@ Result<void> run_job(const TrainingJob& job) {
     return print_marks(job, windows, KA_TRY(bytes_of(job.evaluate)));
   }
   TrainingState state;
-  // Without a checkpoint the run begins anew: it may have been stopped before its first one.
+  // Without a checkpoint the training begins anew: it may have been stopped before the first
+  // checkpoint.
   if (job.resume && std::filesystem::exists(job.checkpoint)) {
     state = KA_TRY(read_checkpoint(KA_TRY(bytes_of(job.checkpoint)), job.identity, job.checkpoint));
   }
   Processes processes = KA_TRY(Processes::join(job.place));
   const bool is_first = processes.share().is_first();
-  // All processes read the checkpoint before the first one may write another.
+  // All processes must have read the old checkpoint before the first process may write a new one.
   KA_TRY(processes.agree(job.identity + " " + std::to_string(job.options.steps) + " " +
                          std::to_string(state.step)));
   TrainingHooks hooks{.keep = {}, .every = job.keep_every, .share = processes.share()};
-  // The other processes print nothing but their result and errors.
+  // The other processes print only their result and errors, no progress.
   if (is_first) hooks.progress = progress_lines();
   if (is_first && !job.checkpoint.empty()) {
     hooks.keep = [&](const TrainingState& now) {
@@ -435,7 +441,7 @@ Result<void> run_job(const TrainingJob& job) {
   TrainingJob hashed = job;
   hashed.windows_sha256 = sha256_of(bytes);
   const Fitted fit = KA_TRY(fit_job(hashed, windows, std::move(state), hooks));
-  // The processes part here; the others need not wait while the first one writes files.
+  // The other processes end here; they need not wait while the first one writes files.
   processes.leave();
   if (!is_first) {
     std::cout << Json{{"trained_with", job.place.size}}.dump() << std::endl;
@@ -444,7 +450,8 @@ Result<void> run_job(const TrainingJob& job) {
   KA_TRY(save_log(job, fit.points));
   KA_TRY(write_file(job.out, fit.model));
   std::error_code ignored;
-  // After the model is written: a kill between both leaves a run that can go on.
+  // The checkpoint is removed after the model is written. If the program is killed in between, the
+  // run can still be continued.
   if (!job.checkpoint.empty()) std::filesystem::remove(job.checkpoint, ignored);
   Json last{{"written", job.out}, {"loss", fit.points.empty() ? 0.0 : fit.points.back().loss}};
   if (!fit.points.empty() && fit.points.back().judgement) {

@@ -16,12 +16,12 @@
 
 namespace {
 
-// docs/training.md names this limit.
-constexpr double least_gflops = 20.0;  // speed of a matrix product on one core of 2015 or later
+// The warning appears below this speed. docs/training.md names this limit.
+constexpr double least_gflops = 20.0;  // one core of 2015 or later is faster
 
-/// The speed of a product of two 256 x 256 matrices, GFLOP/s: the best of ten.
-/// BLAS libraries can be compared in this way. The best of ten counts, because other work on
-/// the machine slows single products.
+/// Measures the speed of the product of two 256 x 256 matrices, in GFLOP/s. It shows how fast the
+/// BLAS library is. The best of ten products counts, because other work on the machine slows single
+/// ones.
 double product_gflops() {
   using Clock = std::chrono::steady_clock;
   constexpr int size = 256;
@@ -37,7 +37,7 @@ double product_gflops() {
   return best;
 }
 
-/// Warns about a slow BLAS. Debian's LibTorch multiplies with the installed BLAS, and the reference
+/// Warns about a slow BLAS library. Debian's LibTorch uses the installed BLAS, and the reference
 /// BLAS takes ten times as long as OpenBLAS.
 void warn_of_slow_products() {
   const double gflops = product_gflops();
@@ -50,9 +50,9 @@ void warn_of_slow_products() {
   std::cout << nlohmann::ordered_json{{"warning", text.str()}}.dump() << std::endl;
 }
 
-/// Prints the error as JSON and returns the exit code. Exit code 4: another process of the training
-/// has ended, and its own error states the reason.
-/// stdout for the parent program, stderr for people who run this program themselves.
+/// Prints the error and returns the exit code: as JSON on stdout for the parent program, as text on
+/// stderr for people who run this program themselves. Exit code 4 means that another process of the
+/// training has ended; that process states the reason.
 int fail(const kinalign::Error& error) {
   std::cout << nlohmann::ordered_json{{"error",
                                        {{"file", error.file},
@@ -66,26 +66,27 @@ int fail(const kinalign::Error& error) {
 
 }  // namespace
 
-// One argument and no flags: people use kinalign train, which writes the job.
+// The program has one argument and no flags, because people use `kinalign train`, which writes the
+// job.
 int main(int argc, char** argv) {
   if (argc != 2) {
     std::cerr << "usage: kinalign-learn JOB.json\n"
                  "Trains one model. kinalign train writes the job and starts this program.\n";
     return 2;
   }
-  std::signal(SIGPIPE, SIG_IGN);  // a parent that is gone is noticed when a line can't be written
-  // This must come first: threads inherit the setting at their start. Denormal numbers cost a
-  // hundredfold.
+  std::signal(SIGPIPE, SIG_IGN);  // if the parent has ended, the next print fails
+  // Denormal numbers make computations up to a hundred times slower, so they are set to 0. The call
+  // must come first, because threads inherit the setting when they start.
   at::globalContext().setFlushDenormal(true);
-  // The same seed then gives the same weights (docs/training.md). Where no such algorithm exists,
-  // LibTorch only warns.
+  // With deterministic algorithms the same seed gives the same weights (docs/training.md). For
+  // operations without such an algorithm, LibTorch only warns.
   at::globalContext().setDeterministicAlgorithms(true, true);
   std::ifstream in(argv[1], std::ios::binary);
   const std::string text(std::istreambuf_iterator<char>(in), {});
   try {
     auto job = kinalign::read_job(text, argv[1]);
     if (!job) return fail(job.error());
-    // Checked here, because LibTorch would only fail at the first tensor.
+    // The GPU is checked here, because LibTorch would fail only at the first tensor.
     if (job->device == "cuda" && !torch::cuda::is_available()) {
       return fail({"--device", 0, "a GPU and a LibTorch with CUDA (docs/training.md)",
                    "no GPU that LibTorch can use"});
@@ -94,7 +95,7 @@ int main(int argc, char** argv) {
     if (job->device == "cpu") warn_of_slow_products();
     const auto done = kinalign::run_job(*job);
     return done ? 0 : fail(done.error());
-  } catch (const std::exception& fault) {  // LibTorch throws
+  } catch (const std::exception& fault) {  // LibTorch reports errors as exceptions
     return fail({argv[1], 0, "a job that LibTorch can run", fault.what()});
   }
 }

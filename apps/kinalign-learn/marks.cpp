@@ -26,12 +26,12 @@ std::string name_of(Devices devices) {
   return std::string(names[static_cast<std::size_t>(devices)]);
 }
 
-/// `fuser` must live as long as the function.
+/// Wraps the model in a function. `fuser` must live as long as the function.
 Fusion fusion_of(Fuser& fuser) {
   return [&](const FuseInput& input) { return fuser.solve(input); };
 }
 
-/// The members of errors of fusion in a row.
+/// The errors of a fusion as members of a JSON object.
 Json errors_json(const FuseErrors& errors) {
   return {{"all_cm", errors.all_cm},
           {"hidden_cm", errors.hidden_cm},
@@ -44,7 +44,8 @@ Json errors_json(const FuseErrors& errors) {
           {"hidden", errors.hidden}};
 }
 
-/// A ratio says more than the jitter itself: 1 is as smooth as the truth.
+/// The errors of a pose as members of a JSON object. Jitter is given as a ratio to the truth's
+/// jitter, so 1 is as smooth as the truth.
 Json errors_json(const PoseErrors& errors) {
   return {{"sip_deg", errors.sip_deg},
           {"angle_deg", errors.angle_deg},
@@ -54,11 +55,10 @@ Json errors_json(const PoseErrors& errors) {
           {"frames", errors.frames}};
 }
 
-// Flushed at once: the parent program reads line by line.
+// Prints one line. The line is flushed at once, because the parent program reads line by line.
 void print_row(const Json& row) { std::cout << row.dump() << std::endl; }
 
-/// The errors of each person, by name.
-/// They are sorted, because the map is.
+/// The errors of each person, sorted by the person's name.
 template <class Errors>
 Json people_json(const std::map<std::string, Errors>& people) {
   Json out = Json::object();
@@ -66,8 +66,8 @@ Json people_json(const std::map<std::string, Errors>& people) {
   return out;
 }
 
-/// Prints a row for each state of the nodes.
-/// 0: the first leaf is the one that is lost; it is the left wrist in the usual nodes.
+/// Prints a row for each state of the nodes, such as one node lost. The argument 0 chooses the
+/// first leaf as the lost node; with the usual nodes that is the left wrist.
 Result<void> print_pose_marks(const TrainingJob& job, const Windows& windows, PoseModel model) {
   const std::string method = model.facts.method;
   auto solver = KA_TRY(PoseSolver::make(std::move(model)));
@@ -91,7 +91,7 @@ void print_marks_of(const std::string& method, const std::vector<FuseMark>& mark
   }
 }
 
-/// Prints a row for each node: the error of its heading before and after.
+/// Prints a row for each node: the error of its heading before and after the correction.
 void print_headings(const std::string& method, const std::vector<HeadingMark>& marks) {
   for (const HeadingMark& mark : marks) {
     print_row({{"method", method},
@@ -103,16 +103,16 @@ void print_headings(const std::string& method, const std::vector<HeadingMark>& m
   }
 }
 
-/// Prints rows of the model and of the filter: for each device and both, and for each node's
-/// heading. The filter fuses without learning.
+/// Prints the rows of a model for fusion and of the filter, which fuses without learning. Both have
+/// a row for each choice of devices and a row for each node's heading.
 Result<void> print_fuse_marks(const TrainingJob& job, const Windows& windows, FuseModel model) {
   auto fuser = KA_TRY(Fuser::make(std::move(model)));
-  // The model decides which nodes are simulated, not the job.
+  // The model, and not the job, decides which nodes are simulated.
   const FuseLayout layout = fuser.model().layout;
   const FuseData data =
       KA_TRY(fuse_data(windows, job.truth, layout.nodes.nodes, fuse_options(job.input, windows)));
   const std::vector<Devices> all{all_devices.begin(), all_devices.end()};
-  // The filter without learning knows only the Kinect's joints.
+  // Without learning, headings are found from the Kinect's joints only.
   const HeadingsOf by_joints = [&](const FuseInput& input) {
     FuseInput own = input;
     unexchange(layout, own);
@@ -123,7 +123,7 @@ Result<void> print_fuse_marks(const TrainingJob& job, const Windows& windows, Fu
   const Fusion filter = [&](const FuseInput& input) {
     FuseInput own = input;
     unexchange(layout, own);
-    // A fair comparison: the filter, too, gets corrected headings.
+    // The filter gets corrected headings like the model, so that the comparison is fair.
     own.nodes = with_headings(std::move(own.nodes), by_joints(own));
     return filtered_pose(layout, data.pose.body, own);
   };
@@ -143,7 +143,7 @@ Result<std::string> pose_metrics_json(const PoseModel& model, const PoseData& da
   Json out;
   for (const PoseMark& mark : KA_TRY(pose_marks(solver, data, 0))) {
     std::string state = mark.nodes;  // "20 minutes later"
-    // Keys of JSON without blanks.
+    // The keys of the JSON have no blanks.
     std::replace(state.begin(), state.end(), ' ', '_');
     out[state + "_position_cm"] = mark.smoothed.position_cm;
     out[state + "_sip_deg"] = mark.smoothed.sip_deg;
@@ -152,7 +152,7 @@ Result<std::string> pose_metrics_json(const PoseModel& model, const PoseData& da
   return out.dump();
 }
 
-/// The marks that the model's file states, as JSON.
+/// The marks of a model for fusion, as the model's file states them in JSON.
 Result<std::string> fuse_metrics_json(const FuseModel& model, const FuseData& data) {
   if (data.pose.tested.empty()) return std::string();
   auto fuser = KA_TRY(Fuser::make(model));
@@ -165,7 +165,7 @@ Result<std::string> fuse_metrics_json(const FuseModel& model, const FuseData& da
   return out.dump();
 }
 
-// A name that the file lacks is not an error here: the Kinect is then simulated.
+// If the file has no stream of this name, the Kinect is simulated; that is no error.
 FuseDataOptions fuse_options(const std::string& input, const Windows& windows) {
   FuseDataOptions out;
   if (windows.facts.find(input) != nullptr) out.kinect = input;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The marks of a model on the people of the test part, as JSON.
+// The marks of a model: its errors on the people of the test part, as JSON.
 #pragma once
 
 #include "apps/kinalign-learn/job.h"
@@ -13,18 +13,20 @@
 
 namespace kinalign {
 
-/// The marks for the model's file. Empty if the data has no test part.
-/// `kinalign info` shows these numbers. They are computed once, after training, on people of the
-/// test part.
+/// The marks to store in the model's file. Empty if the data has no test part. The marks are
+/// computed once, after training, on people whom the model has not seen. `kinalign info` shows
+/// them.
 Result<std::string> pose_metrics_json(const PoseModel& model, const PoseData& data);
 Result<std::string> fuse_metrics_json(const FuseModel& model, const FuseData& data);
 
-/// The Kinect of the file if it has a stream named `input`, else simulated ones.
+/// Takes the Kinect's joints from the stream named `input`. If the file has no such stream, the
+/// Kinect is simulated.
 FuseDataOptions fuse_options(const std::string& input, const Windows& windows);
 
-/// Prints one JSON object a line. For poses: one for each state of the nodes. For fusion: for the
-/// model and for the filter, one for each device and both, and one for each node's heading.
-/// "people" holds the marks of each person. `model`: the bytes of job.evaluate.
+/// Prints the marks of the job's model, one JSON object a line. A model for poses has one line for
+/// each state of the nodes. A model for fusion has lines for the model and for a filter without
+/// learning: one for each choice of devices, and one for each node's heading. "people" has the
+/// marks of each person. `model`: the bytes of the file job.evaluate.
 Result<void> print_marks(const TrainingJob& job, const Windows& windows, const std::string& model);
 
 }  // namespace kinalign

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-// LibTorch's own Gloo is usable only if its headers are there (Debian: libgloo-dev).
+// LibTorch's Gloo can be used only if Gloo's headers are installed (Debian: libgloo-dev).
 #if defined(USE_C10D_GLOO) && __has_include(<gloo/context.h>)
 #define KINALIGN_HAS_GLOO 1
 #include <arpa/inet.h>
@@ -34,16 +34,17 @@ Failure too_many(const ProcessPlace& place) {
 
 namespace {
 
-// docs/training_processes.md states both limits.
+// The time for all processes to connect. docs/training_processes.md states this limit and the next
+// one.
 constexpr std::chrono::minutes longest_start{5};
-/// The closed connections of a process that ends are noticed at once; this limit is for machines
-/// that vanish.
+/// The longest wait for another process in one training step. If a process ends, its connections
+/// close and the others notice at once. This limit is for a machine that vanishes from the network.
 constexpr std::chrono::minutes longest_step{10};
 
 using Gloo = c10d::ProcessGroupGloo;
 
-/// The address of this machine on the route to process 0; empty without a route. A machine's own
-/// name often resolves to 127.0.1.1, which other machines can't reach.
+/// This machine's address on the route to process 0; empty if there is no route. The machine's own
+/// name is not used: it often resolves to 127.0.1.1, which other machines can't reach.
 std::string own_address(const ProcessPlace& place) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_DGRAM;
@@ -51,7 +52,8 @@ std::string own_address(const ProcessPlace& place) {
   if (::getaddrinfo(place.address.c_str(), std::to_string(place.port).c_str(), &hints, &found) != 0)
     return "";
   std::string out;
-  // connect() on a datagram socket sends nothing; it only chooses the route and the own address.
+  // connect() on a datagram socket sends nothing: it only chooses the route and this machine's
+  // address.
   const int way = ::socket(found->ai_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   sockaddr_storage own{};
   socklen_t length = sizeof own;
@@ -62,13 +64,14 @@ std::string own_address(const ProcessPlace& place) {
                     NI_NUMERICHOST) == 0) {
     out = text.data();
   }
-  // Reached on success and on failure; all resources are freed here.
+  // Both resources are freed here, after success and after failure.
   if (way >= 0) ::close(way);
   ::freeaddrinfo(found);
   return out;
 }
 
-/// The user's interface, else the one that leads to process 0, else Gloo's own choice.
+/// The network device for Gloo: the user's interface, else the one that leads to process 0, else
+/// the one that Gloo chooses.
 std::shared_ptr<::gloo::transport::Device> device_for(const ProcessPlace& place) {
   if (!place.interface.empty()) return Gloo::createDeviceForInterface(place.interface);
   const std::string own = own_address(place);
@@ -77,17 +80,19 @@ std::shared_ptr<::gloo::transport::Device> device_for(const ProcessPlace& place)
 
 }  // namespace
 
-/// The share's function holds the group, so the connection lives as long as any user of the share.
+/// The connections between the processes. The function in `share_` has a copy of the pointer to the
+/// group, so the connections last as long as the share is used.
 struct Processes::Group {
   ProcessPlace place;
   c10::intrusive_ptr<c10d::Store> store;
   c10::intrusive_ptr<Gloo> gloo;
 
-  /// Sums the values over all processes. False if another process has ended; LibTorch throws then.
+  /// Sums the values over all processes. Returns false if another process has ended, for which
+  /// LibTorch throws an exception.
   bool sum(torch::Tensor& values) const {
     try {
       std::vector<at::Tensor> all{values};
-      // In place: `values` has the sum afterwards.
+      // allreduce() replaces `values` by the sum.
       gloo->allreduce(all)->wait();
       return true;
     } catch (const std::exception&) {
@@ -103,7 +108,7 @@ Result<Processes> Processes::join(const ProcessPlace& place) {
   try {
     c10d::TCPStoreOptions start;
     start.port = place.port;
-    // Process 0 keeps the store, through which all processes find each other.
+    // Process 0 serves the store, through which all processes find each other.
     start.isServer = place.rank == 0;
     start.numWorkers = static_cast<std::size_t>(place.size);
     start.timeout = longest_start;
@@ -130,7 +135,7 @@ Result<Processes> Processes::join(const ProcessPlace& place) {
 Result<void> Processes::agree(const std::string& text) {
   if (!group_) return {};
   try {
-    // Process 0 writes its text; get() waits until it is there.
+    // Process 0 stores its text. The get() of the other processes waits until the text is there.
     const std::vector<std::uint8_t> own(text.begin(), text.end());
     if (share_.is_first()) group_->store->set("job", own);
     if (group_->store->get("job") == own) return {};
@@ -151,7 +156,7 @@ void Processes::leave() {
   }
 }
 
-// Without Gloo a single process works as always, and several are refused with the reason.
+// Without Gloo one process can train; several processes are refused with the reason.
 #else
 
 struct Processes::Group {};

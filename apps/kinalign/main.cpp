@@ -8,7 +8,8 @@
 #include <climits>
 #include <cstdlib>
 
-/// Collects everything that verbs get from the system; no code below reads the environment itself.
+/// Collects everything that verbs get from the operating system. No other code reads the
+/// environment.
 int main(int argc, char** argv) {
   kinalign::PosixFiles files;
   // getcwd fails if the current folder was removed. The root is then taken as the current folder.

@@ -3,10 +3,10 @@
 
 namespace kinalign {
 
-/// The order is that of the help page.
+/// All verbs, in the order of the help page.
 std::vector<Verb> all_verbs() {
-  // Files come first, then recording, data sets, learning, simulation and the lab's services, and
-  // last the program's own pages.
+  // Verbs for files come first, then recording, data sets, learning, simulation and the lab's
+  // services. The verbs about the program itself come last.
   return {align_verb(),
           info_verb(),
           check_verb(),

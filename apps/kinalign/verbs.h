@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// All verbs, in the order of the help page. A new verb needs its own file, a line here and a line
-// in verbs.cpp.
+// Declares all verbs, in the order of the help page. A new verb needs its own file, a line here and
+// a line in verbs.cpp.
 #pragma once
 
 #include "apps/cli/verb.h"
@@ -9,8 +9,8 @@
 
 namespace kinalign {
 
-/// Each function makes the description of one verb. The options behind it are made anew for each
-/// call (make_verb in apps/cli/verb.h).
+/// Each function makes the description of one verb. Each run of a verb gets new options with their
+/// defaults (make_verb in apps/cli/verb.h).
 Verb align_verb();
 Verb info_verb();
 Verb check_verb();
