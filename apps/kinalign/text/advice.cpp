@@ -5,17 +5,17 @@
 
 namespace kinalign {
 
-/// Only errors that a person can act on get advice.
+/// Only an error that a person can do something about gets advice.
 std::vector<std::string> port_advice(const Error& error, const WantedPort& wanted) {
-  // ss(8) of iproute2 lists sockets with their programs.
+  // ss(8) of iproute2 lists open ports and the programs that opened them.
   if (error.kind == ErrorKind::port_taken) {
     return {fmt::format(
         "ss -{}lpn 'sport = :{}' shows which program uses it, perhaps another kinalign; {} "
         "sets another port",
         wanted.tcp ? 't' : 'u', wanted.port, wanted.port_from)};
   }
-  // Ports below 1024 need a right. setcap gives this right to the program alone and not to the
-  // user.
+  // Linux allows ports below 1024 only with a special right. setcap gives the right to this program
+  // alone, not to all programs of the user.
   if (error.kind == ErrorKind::port_forbidden) {
     return {
         "run as root, or allow it once: sudo setcap cap_net_bind_service=+ep $(command -v "
@@ -23,7 +23,7 @@ std::vector<std::string> port_advice(const Error& error, const WantedPort& wante
         wanted.port_from +
             " sets a port from 1024 on, which needs no root rights, if all senders can use it"};
   }
-  // The address is not one of this machine.
+  // The address that the user gave is not one of this machine's addresses.
   if (error.kind == ErrorKind::address_elsewhere) {
     return {"ip -brief address shows this machine's addresses; " + wanted.address_from +
             " accepts any of them"};

@@ -13,15 +13,16 @@ namespace {
 
 using EventKind = ClockEvent::Kind;
 
-/// Three steps within this time mean a clock that contradicts the assumptions.
+/// Three steps within this time mean that a clock contradicts the assumptions
+/// (docs/clock_assumptions.md).
 constexpr Duration steps_within = std::chrono::seconds(10);
-/// Such a clock is trusted again after this time without an event.
+/// A clock that contradicted the assumptions is trusted again after this time without an event.
 constexpr Duration quiet = std::chrono::minutes(1);
 
 bool is_step(EventKind kind) { return kind == EventKind::step || kind == EventKind::slip; }
 
-/// True for events that contradict the assumptions about clocks, and for those that follow from
-/// one.
+/// True for an event that contradicts the assumptions about clocks, and for an event that follows
+/// from a contradiction.
 bool is_trouble(EventKind kind) {
   return is_step(kind) || kind == EventKind::withdrawn || kind == EventKind::violator ||
          kind == EventKind::settled || kind == EventKind::relaxed || kind == EventKind::uneasy;
@@ -29,26 +30,27 @@ bool is_trouble(EventKind kind) {
 
 }  // namespace
 
-// A stream may have passed to another node; then the clock starts anew. Each further event of one
-// cause withdraws the same stretch again; only the first withdrawal has a line.
+// If another node now has the stream, the record of its clock starts anew. A contradiction may
+// withdraw the same stretch of time several times; only the first withdrawal gets a line.
 std::string ClockEventLines::line(std::size_t stream, std::uint32_t node_id,
                                   const ClockEvent& event, HostTime now) {
-  // The entry is made with the first event of a stream.
+  // The first event of a stream makes the entry.
   Clock& clock = clocks_[stream];
   if (clock.node_id != node_id) clock = {};
   clock.node_id = node_id;
   if (!is_trouble(event.kind)) return "";
-  // The old state is judged before this event is noted: a minute without trouble ends it.
+  // The state is judged before this event is noted: a minute without trouble ends a contradiction.
   clock.contradicts = contradicts(stream, node_id, now);
   clock.troubled = now;
-  // While a clock contradicts the assumptions, its events are only noted as the latest trouble.
+  // While a clock contradicts the assumptions, further events only update the time of the latest
+  // trouble.
   if (clock.contradicts) return "";
   if (is_step(event.kind)) {
-    // The oldest of the three steps is dropped.
+    // The new step replaces the oldest of the three stored steps.
     std::rotate(clock.steps.begin(), clock.steps.begin() + 1, clock.steps.end());
     clock.steps.back() = event.end;
     const HostTime first = clock.steps.front();
-    // An array that is not full yet has a minimum time in front.
+    // With fewer than three steps so far, the first element is still HostTime::min().
     clock.contradicts = first != HostTime::min() && event.end - first <= steps_within;
     if (clock.contradicts) {
       return fmt::format(
@@ -61,7 +63,7 @@ std::string ClockEventLines::line(std::size_t stream, std::uint32_t node_id,
   if (event.kind == EventKind::withdrawn) {
     const HostTime printed = clock.withdrawn;
     clock.withdrawn = std::max(printed, event.end);
-    // This stretch was printed already.
+    // The withdrawal of this stretch was printed already.
     if (event.begin < printed) return "";
   }
   return event_text(event, node_id, names_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lines about the nodes' clocks that people read while the server runs. A clock that never
-// agrees with the assumptions gets a single line. Programs get every event (--json).
+// The lines about the nodes' clocks that a user reads while a server or recorder runs. A clock that
+// keeps contradicting the assumptions gets a single line. Programs get every event (--json).
 #pragma once
 
 #include "apps/kinalign/text/node_names.h"
@@ -17,34 +17,35 @@
 
 namespace kinalign {
 
-/// The reason printed for a clock that contradicts the assumptions, after "node 7: " or "not
-/// locked: ".
+/// The reason printed for a clock that contradicts the assumptions. It stands after "node 7: " or
+/// "not locked: ".
 inline constexpr std::string_view contradiction_text =
     "its clock keeps contradicting the assumptions (drift above 100 ppm, or the node sleeps)";
 
-/// Programs get every event; people get a line only if it says something new. A clock that steps
-/// again and again would otherwise fill the screen. Invariant: `steps` has the last three steps in
-/// their order, the newest one last.
+/// Chooses the events that get a line for people: only those that say something new. A clock that
+/// steps again and again would otherwise fill the screen. Invariant: `steps` has the last three
+/// steps, the newest one last.
 class ClockEventLines {
  public:
   explicit ClockEventLines(NodeNames names = {}) : names_(std::move(names)) {}
 
-  /// The line about the event; empty if it has none. `now`: the time of the call, on the host's raw
-  /// clock.
+  /// The line about an event. Empty if the event gets no line. `now`: the time of the call on the
+  /// host's raw clock.
   std::string line(std::size_t stream, std::uint32_t node_id, const ClockEvent& event,
                    HostTime now);
 
-  /// True if the clock of the stream's node contradicts the assumptions again and again, and did so
-  /// within the last minute.
+  /// True if the clock of the stream's node has contradicted the assumptions repeatedly, the last
+  /// time within the last minute.
   bool contradicts(std::size_t stream, std::uint32_t node_id, HostTime now) const;
 
  private:
   struct Clock {
     std::uint32_t node_id = 0;
-    std::array<HostTime, 3> steps{HostTime::min(), HostTime::min(), HostTime::min()};  // latest
+    // the last three steps
+    std::array<HostTime, 3> steps{HostTime::min(), HostTime::min(), HostTime::min()};
     bool contradicts = false;
-    HostTime troubled = HostTime::min();   // the latest event of trouble
-    HostTime withdrawn = HostTime::min();  // end of the stretches whose withdrawal was printed
+    HostTime troubled = HostTime::min();   // the time of the latest event of trouble
+    HostTime withdrawn = HostTime::min();  // withdrawals up to this time were printed
   };
 
   NodeNames names_;

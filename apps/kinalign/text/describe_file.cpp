@@ -26,16 +26,16 @@ Error blame(const std::string& path) { return {path, 0, "a take that HDF5 can re
 
 namespace {
 
-/// The kind and the parts of a stream in words, with the names of its joints or nodes.
 using Json = nlohmann::ordered_json;
 
+/// The content of a stream in words, with the names of its joints or nodes.
 struct Contents {
   std::string kind, parts;  // "points", "25 joints"
   Json names;
 };
 
-/// The contents of a stream (Kind: ClipInput, PointInput, ImuInput) or of a take's group
-/// (ClipGroup, PointGroup, ImuGroup).
+/// The contents of a stream of a recording (Kind: ClipInput, PointInput, ImuInput) or of a group in
+/// a take (ClipGroup, PointGroup, ImuGroup).
 template <class Kind>
 Contents contents_of(const Kind& kind) {
   if constexpr (requires { kind.skeleton; }) {
@@ -46,13 +46,13 @@ Contents contents_of(const Kind& kind) {
   } else if constexpr (requires { kind.joint_names; }) {
     return {"points", counted(kind.joint_names.size(), "joint"), kind.joint_names};
   } else {
-    // Quantities that were not measured are left out.
+    // Only quantities that the sensors measured are listed.
     std::vector<std::string> parts;
     if (kind.content.orientation) parts.emplace_back("orientation");
     if (kind.content.acceleration) {
       parts.emplace_back("acceleration with" + std::string(kind.content.gravity ? "" : "out") +
                          " gravity");
-      // After `root_node` is used, gravity stays in the root's acceleration only.
+      // If the take has a root node, gravity was removed from all accelerations but the root's.
       if constexpr (requires { kind.root_node; }) {
         if (kind.content.gravity && !kind.root_node.empty()) {
           parts.back() += " in " + kind.root_node + " only";
@@ -79,8 +79,8 @@ Json files_json(const std::vector<InputFacts>& files) {
   return out;
 }
 
-// A stream of a fixed step (a BVH) has its rate by definition. For all others the median step
-// counts, which gaps do not change.
+// A file with a fixed time between frames (a BVH) states its rate. For other files the rate follows
+// from the median time between samples, which gaps do not change.
 double rate_hz(const RecordedStream& s) {
   const double step = s.step_ns.value_or(static_cast<double>(s.survey.median_step_ns));
   return step > 0.0 ? 1e9 / step : 0.0;
@@ -90,22 +90,22 @@ double seconds_of(const StampSurvey& survey) {
   return 1e-9 * static_cast<double>((survey.last - survey.first).count());
 }
 
-/// " (25 on the whole)" if the mean rate differs from the median step's rate by 10 % or more, as
-/// with bursts or gaps.
+/// The text " (25 on the whole)" if the mean rate differs from the usual rate by 10 % or more.
+/// Bursts or gaps cause such a difference.
 std::string mean_rate_text(const RecordedStream& s) {
   const double length = seconds_of(s.survey), rate = rate_hz(s);
-  // The condition is also false for a length that is no number.
+  // The condition is also false if the length is NaN.
   if (!(length > 0.0)) return "";
-  // kept() counts the samples whose stamps rise. n samples span n - 1 steps.
+  // kept() counts the samples whose stamps rise. There are n - 1 intervals between n samples.
   const double mean = static_cast<double>(s.survey.kept() - 1) / length;
   return std::abs(mean - rate) < 0.1 * rate ? ""
                                             : fmt::format(" ({:.4g} over the whole stream)", mean);
 }
 
-/// The lines about a stream: samples, rate, first and last stamp, names, and stamps that do not
-/// rise.
+/// The lines about a stream: number of samples, rate, first and last stamp, names, and the number
+/// of stamps that do not rise.
 std::string stream_lines(const RecordedStream& s, const Contents& c, Names names) {
-  // A file of one node is called by the node; its kind adds nothing.
+  // A file with one node is called by the node's name; the word "imu" is left out.
   const bool one_node = c.kind == "imu" && c.names.size() == 1;
   const std::string who = one_node ? shown(c.names.front().get<std::string>()) : c.kind;
   std::string line = fmt::format("  {:<8} {} ({}): {} samples over {:.3f} s at {:.4g} Hz{}; {}\n",
@@ -115,11 +115,11 @@ std::string stream_lines(const RecordedStream& s, const Contents& c, Names names
     line += fmt::format("           from {} to {} ns{}\n", to_ns(first_of(s)), to_ns(last_of(s)),
                         s.counted ? ", counted at that rate" : "");
   }
-  // Names of nodes are few and important, so they are always shown.
+  // The names of nodes are few and important, so they are listed even without --verbose.
   if (names == Names::yes || (c.kind == "imu" && !one_node)) {
     line += name_lines(c.names.get<std::vector<std::string>>());
   }
-  // The difference counts samples that alignment can't use.
+  // Alignment can't use samples whose stamps do not rise.
   if (s.survey.kept() < s.survey.samples) {
     line += fmt::format("           {} stamps repeat, {} step back, {} jump ahead\n",
                         s.survey.duplicates, s.survey.backward, s.survey.ahead);
@@ -127,8 +127,7 @@ std::string stream_lines(const RecordedStream& s, const Contents& c, Names names
   return line;
 }
 
-/// The JSON about a stream.
-/// A program may depend on each of the keys.
+/// The JSON about a stream. Programs of users may depend on each of the keys.
 Json stream_json(const RecordedStream& s, const Contents& c, const Findings& findings) {
   return {{"name", s.name},
           {"kind", c.kind},
@@ -146,9 +145,10 @@ Json stream_json(const RecordedStream& s, const Contents& c, const Findings& fin
           {"findings", Json::parse(findings_json(findings))}};
 }
 
-/// Everything about a take as one JSON text. Runs in the child process.
+/// Everything about a take as one JSON text. The function runs in a child process.
 Result<std::string> take_facts(FileSystem& files, const std::string& path) {
-  // HDF5 is used from here on. Only text leaves this process.
+  // HDF5 may crash at a damaged file, so only this child process uses it. The parent process gets
+  // text.
   const TakeReader reader = KA_TRY(TakeReader::open(files, path));
   const TakeHeader& header = reader.header();
   Json out{{"file", path},
@@ -166,7 +166,7 @@ Result<std::string> take_facts(FileSystem& files, const std::string& path) {
                               {"names", c.names},
                               {"files", files_json(group.files)}});
   }
-  // The report is stored as text in the take. It may be damaged although HDF5 could read it.
+  // The take contains the report as JSON text. That text may be damaged even if HDF5 could read it.
   out["report"] = Json::parse(KA_TRY(reader.report_json()), nullptr, false);
   if (out["report"].is_discarded()) {
     return Failure(Error{path, 0, "a report as JSON", "text that is not JSON"});
@@ -199,7 +199,8 @@ std::string read_as(const RecordedStream& stream) {
                      stream.survey.samples);
 }
 
-/// Describes every stream. The findings of a file that several streams share are listed once.
+/// Describes every stream of a recording. If several streams come from one file, the file's
+/// findings are listed once.
 Description describe_recording(const std::string& path, const Recording& recording, Names names) {
   Json out{{"file", path},
            {"kind", "recording"},
@@ -211,7 +212,8 @@ Description describe_recording(const std::string& path, const Recording& recordi
   for (std::size_t i = 0; i < recording.streams.size(); ++i) {
     const RecordedStream& s = recording.streams[i];
     const Contents c = contents_of(s.data);
-    // Findings of a file belong to its first stream, so each of them is counted once.
+    // The findings of a file are listed with the file's first stream, so each finding is counted
+    // once.
     const SharedFile* file = newly_read_file(recording, i);
     Findings found = file == nullptr ? Findings{} : file->findings;
     append(found, all_findings(s));
@@ -228,7 +230,7 @@ Result<Description> describe_take(FileSystem& files, const std::string& path, Na
   return Description{take_text(json, names), json};
 }
 
-// stable_sort keeps the order of the file among findings of one severity.
+// stable_sort keeps findings of the same severity in the order of the file.
 std::string finding_lines(Findings findings, const Console& console) {
   std::stable_sort(findings.begin(), findings.end(),
                    [](const Finding& a, const Finding& b) { return a.severity > b.severity; });

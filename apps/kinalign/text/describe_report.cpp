@@ -22,16 +22,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A stamp, ns. 0 if the member is missing or out of a take's range.
-/// The limit keeps sums and dates of stamps within int64.
+/// Reads a stamp in ns. Returns 0 if the member is missing or above 9.2e18; with this limit sums
+/// and dates of stamps fit into int64.
 std::int64_t stamp_at(const Json& json, const char* key) {
   return whole_at(json, key, 9'200'000'000'000'000'000);
 }
 
-/// The take's span in time. Devices without a calendar count from near zero, so no date is printed
-/// for them.
+/// The begin and the end of a take. The stamps of devices without a calendar count from near zero,
+/// so no date is printed for them.
 std::string span_text(const Json& report) {
-  // A begin near zero is no date, and an end before the begin is no report of kinalign.
+  // A begin near zero is no date. kinalign writes no report whose end is before its begin.
   const std::int64_t begin = stamp_at(report, "begin_ns"), end = stamp_at(report, "end_ns");
   if (!is_date(begin) || end < begin) {
     return fmt::format("  from {:.3f} to {:.3f} s, no date known\n",
@@ -43,7 +43,8 @@ std::string span_text(const Json& report) {
 /// The first lines about a take: software, frames, rate, length, subject and action.
 std::string head_text(const Json& take, const Json& report) {
   const double rate = number_at(report, "rate_hz");
-  // Every member is read by a function that gives an empty value for a wrong type.
+  // The functions number_at(), count_at() and text_at() return an empty value if a member has a
+  // wrong type.
   const std::uint64_t frames = count_at(take, "frames");
   std::string text = fmt::format("{}: a take by {}, {} frames", text_at(take, "file"),
                                  text_at(take, "software"), grouped(frames));
@@ -62,12 +63,12 @@ std::string head_text(const Json& take, const Json& report) {
   return text + span_text(report);
 }
 
-/// ", 97.8 % valid, 1.6 % inferred". Empty for a skeleton that was not resampled.
+/// The text ", 97.8 % valid, 1.6 % inferred". Empty for a skeleton that was not resampled.
 std::string marks_text(const Json& s) {
   const std::uint64_t samples = count_at(s, "samples");
-  // A stream that was not resampled has no count of samples.
+  // The report has no number of samples for a stream that was not resampled.
   if (samples == 0) return "";
-  // A damaged report may count more invalid samples than samples.
+  // A damaged report may state more invalid samples than there are samples.
   const std::uint64_t invalid = std::min(samples, count_at(s, "invalid"));
   const std::string valid = share_text(samples - invalid, samples);
   std::string text = valid.empty() ? ", nothing valid" : ", " + valid + " valid";
@@ -80,11 +81,12 @@ std::string marks_text(const Json& s) {
   return text;
 }
 
-/// "29.92 Hz, shared clock, 97.8 % valid, 2 gaps (0.83 s)"
+/// The quality of a stream: "29.92 Hz, shared clock, 97.8 % valid, 2 gaps (0.83 s)".
 std::string quality_text(const Json& s) {
   const auto has = [&s](const char* key) { return s.is_object() && s.contains(key); };
   std::optional<std::int64_t> interval_ns;
-  // An interval that is missing differs from one that is zero: the clock is then unknown.
+  // A missing interval means that the clock's error is not known; an interval of zero means no
+  // error.
   if (has("worst_interval_ns")) interval_ns = stamp_at(s, "worst_interval_ns");
   const bool stamps_counted = has("stamps_counted") && s["stamps_counted"] == true;
   std::string text = fmt::format("{:.4g} Hz, ", number_at(s, "rate_hz"));
@@ -95,7 +97,7 @@ std::string quality_text(const Json& s) {
   }
   text += marks_text(s);
   const std::uint64_t gaps = count_at(s, "gaps");
-  // Gaps are shown with their total length, since one long gap is worse than many short ones.
+  // The total length of the gaps is shown, too, since one long gap is worse than many short ones.
   if (gaps > 0) {
     text +=
         fmt::format(", {} ({:.2f} s)", counted(gaps, "gap"), 1e-9 * number_at(s, "gap_time_ns"));
@@ -112,21 +114,23 @@ std::vector<std::string> texts_at(const Json& json, const char* key) {
   return out;
 }
 
-/// The lines about a stream of a take: files, and the quality of each device or node.
+/// The lines about a stream of a take: its files, and the quality of each of its devices or nodes.
 std::string stream_text(const Json& stream, const Json& report, Names names) {
   const std::string name = text_at(stream, "name");
   std::string text =
       fmt::format("  {:<8} {}: {}\n", name, text_at(stream, "kind"), text_at(stream, "parts"));
   if (names == Names::yes) text += name_lines(texts_at(stream, "names"));
   for (const Json& file : list_at(stream, "files")) {
-    // Twelve digits of a hash are enough to compare two files by eye.
+    // The first twelve digits of a hash are enough to compare two files by eye.
     text += fmt::format("           {}  sha256 {}...\n", text_at(file, "name"),
                         text_at(file, "sha256").substr(0, 12));
   }
-  // The reference was not resampled, so it has no interval and no distance.
+  // The reference stream gives the times of the take's frames. It was not resampled, so it has no
+  // interval.
   const bool reference = name == text_at(report, "reference");
   for (const Json& s : list_at(report, "streams")) {
-    // A stream of nodes has an entry for each device or file. Each gets a line of its own.
+    // The report has one entry for each device or file of a stream of nodes. Each entry gets its
+    // own line.
     if (text_at(s, "stream") != name) continue;
     if (reference) return text + "           the reference" + marks_text(s) + "\n";
     const std::string nodes = fmt::format("{}", fmt::join(texts_at(s, "nodes"), ", "));
@@ -135,9 +139,10 @@ std::string stream_text(const Json& stream, const Json& report, Names names) {
   return text;
 }
 
-/// The lines about a stream that was moved into another's space, with the residual of each joint.
+/// The lines about a stream that was moved into the coordinates of another stream, with the
+/// remaining distance of each joint.
 std::string space_text(const Json& space) {
-  // Before and after are the distances of the same joints, without and with the transform.
+  // Both numbers are distances between the same joints: before the move and after it.
   std::string text =
       fmt::format("  space    {} on {}, {}: {:.1f} cm rms (before: {:.1f})\n",
                   text_at(space, "stream"), text_at(space, "onto"), text_at(space, "method"),
@@ -150,17 +155,18 @@ std::string space_text(const Json& space) {
   return text;
 }
 
-/// A mark with its time since the take's first frame. Earlier marks have negative times.
+/// A mark with its time since the take's first frame. A mark before the first frame has a negative
+/// time.
 std::string mark_text(const Json& mark, std::int64_t begin_ns) {
   const double at_s =
-      // The difference is taken in double: both stamps may be anything in a damaged report.
+      // Stamps of a damaged report may be anything, so the difference is computed in double.
       1e-9 * (static_cast<double>(stamp_at(mark, "time_ns")) - static_cast<double>(begin_ns));
   return fmt::format("  mark     {}\n", mark_words(text_at(mark, "kind"), text_at(mark, "text"),
                                                    at_s, text_at(mark, "source")));
 }
 
 std::string finding_text(const Json& finding) {
-  // The finding is put together like a real one, so both have the same form.
+  // The text is made by Error, so that it has the same form as the text of other findings.
   const Error what{text_at(finding, "file"), static_cast<std::int64_t>(count_at(finding, "line")),
                    text_at(finding, "expected"), text_at(finding, "found")};
   return fmt::format("  {:<8} {}: {}\n", text_at(finding, "severity"), to_string(what),
@@ -176,7 +182,7 @@ std::string mark_words(std::string_view kind, std::string_view text, double at_s
 }
 
 std::string name_lines(const std::vector<std::string>& names) {
-  // Eleven columns is the indentation of all lines below a stream.
+  // All lines below a stream are indented by eleven columns.
   constexpr std::size_t indent = 11, width = 80;
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + shown(name);
@@ -189,11 +195,11 @@ Result<Findings> report_findings(const std::string& report, const std::string& p
 
 std::string take_text(const std::string& json, Names names) {
   const Json take = Json::parse(json, nullptr, false);
-  // A reference to a temporary object would dangle.
+  // `report` is a reference, so the empty object needs a name.
   const Json none = Json::object();
   const Json& report = take.is_object() && take.contains("report") ? take["report"] : none;
   std::string text = head_text(take, report);
-  // The order is: streams, spaces, marks, findings.
+  // Streams come first, then spaces, marks and findings.
   for (const Json& stream : list_at(take, "streams")) text += stream_text(stream, report, names);
   for (const Json& space : list_at(report, "spaces")) text += space_text(space);
   for (const Json& mark : list_at(report, "marks")) {

@@ -20,10 +20,10 @@ double seconds_of(const ChannelSurvey& channel) {
   return static_cast<double>(channel.last - channel.first) / 1e9;
 }
 
-/// The mean rate over the whole channel, Hz; 0 for a single message.
+/// The mean rate of all messages of a channel, Hz. 0 if there is a single message.
 double rate_of(const ChannelSurvey& channel) {
   const double s = seconds_of(channel);
-  // The channel spans n - 1 intervals.
+  // There are n - 1 intervals between n messages.
   return s > 0.0 ? static_cast<double>(channel.messages - 1) / s : 0.0;
 }
 
@@ -38,9 +38,8 @@ Json json_of(const ChannelSurvey& channel) {
           {"missing", channel.missing}};
 }
 
-/// The log time of the first message, ns.
-/// It is the origin of the times of marks. Channels of definitions have no messages and are
-/// skipped.
+/// The log time of the recording's first message, ns. The times of marks count from it. A channel
+/// without messages is skipped.
 std::uint64_t first_of(const RecordingSurvey& survey) {
   std::uint64_t first = UINT64_MAX;
   for (const ChannelSurvey& channel : survey.channels) {
@@ -50,14 +49,14 @@ std::uint64_t first_of(const RecordingSurvey& survey) {
 }
 
 std::string mark_text(const RecordedMark& mark, double at_s) {
-  // A mark may state its latency, for example between a click and the first frame.
+  // A mark may state its latency, for example the time from a click to the first frame.
   const std::string latency = mark.mark.latency ? fmt::format(", {:g} ms before its effect",
                                                               1e3 * seconds(*mark.mark.latency))
                                                 : "";
   return mark_words(kinalign::name_of(mark.mark.kind), mark.mark.text, at_s, mark.source) + latency;
 }
 
-/// The text about a recording. Times of marks count from its first message.
+/// The text about a recording. The times of marks count from its first message.
 std::string text_of(const std::string& path, const RecordingSurvey& survey,
                     const RecordingParts& parts) {
   std::string text = path + "\n";
@@ -70,9 +69,9 @@ std::string text_of(const std::string& path, const RecordingSurvey& survey,
   if (survey.facts && survey.facts->part > 1) {
     line("part", fmt::format("{} of {}", survey.facts->part, survey.facts->first));
   }
-  // parts[0] is the file itself. The others are sibling files that continue it.
+  // parts[0] is the named file. The other parts are the sibling files that continue the recording.
   for (std::size_t k = 1; k < parts.size(); ++k) line("goes on in", parts[k].path);
-  // `truncated` lists the files that lack an index.
+  // `truncated` lists the files without an index at the end.
   line("state", survey.truncated.empty() ? "whole" : "truncated: no index at its end");
   line("messages", grouped(survey.messages));
   text += size_line(survey.bytes);
@@ -83,20 +82,20 @@ std::string text_of(const std::string& path, const RecordingSurvey& survey,
                      static_cast<double>(channel.bytes) / 1e6));
   }
   for (const CountedSender& one : survey.senders) {
-    // the recorder writes its counts once a second, and a last time at its end
+    // The recorder writes its counts once a second, and once more when it ends.
     line("sender", name_of(one, survey) + ": " + counts_text(one.counts) +
                        (survey.facts && !survey.end ? "; counted up to 1 s before the end" : ""));
   }
   for (const CountedPort& one : survey.ports) {
     const std::string lost = loss_of(one.counts, frames_lost(one.stream, survey.senders));
-    // Ports without a loss are left out.
+    // A port that lost nothing gets no line.
     if (!lost.empty()) line("port", one.stream + ": " + lost);
   }
   const std::uint64_t first = first_of(survey);
   for (const auto& [mark, log_time] : survey.marks) {
     line("mark", mark_text(mark, static_cast<double>(log_time - first) / 1e9));
   }
-  // A recording with thousands of marks is described by its first ones.
+  // A recording may have thousands of marks; only the first ones are shown.
   if (survey.more_marks > 0) line("marks", grouped(survey.more_marks) + " more, not shown");
   return text;
 }
@@ -116,7 +115,7 @@ Json json_of(const std::string& path, const RecordingSurvey& survey, const Recor
     json["part"] = survey.facts->part;
   }
   for (std::size_t k = 1; k < parts.size(); ++k) json["goes_on_in"].push_back(parts[k].path);
-  // Only a recording that was ended properly knows how many messages were dropped.
+  // Only a recording with a proper end states how many messages were dropped.
   if (survey.end) json["dropped"] = survey.end->dropped;
   for (const ChannelSurvey& channel : survey.channels) json["channels"].push_back(json_of(channel));
   json["marks"] = json["senders"] = json["ports"] = Json::array();
@@ -124,7 +123,7 @@ Json json_of(const std::string& path, const RecordingSurvey& survey, const Recor
     json["marks"].push_back(Json::parse(to_json(mark)));
     json["marks"].back()["time_ns"] = log_time;
   }
-  // The recorder wrote the counts as JSON with the same members.
+  // The members are those of the JSON that the recorder writes into the recording.
   for (const CountedSender& one : survey.senders) {
     json["senders"].push_back(Json::parse(to_json(one)));
   }

@@ -15,8 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Senders state a nominal rate, which may be wrong. Both are shown, since only the stamps show the
-/// real one.
+/// The rate that the sender stated and the rate of the stamps. Both are shown, because the stated
+/// rate may be wrong.
 std::string rate_text(const XdfStreamSurvey& one) {
   const double nominal = one.stream.nominal_rate_hz;
   std::string text = nominal > 0.0 ? fmt::format("{:.6g} Hz nominal", nominal) : "irregular";
@@ -27,15 +27,14 @@ std::string rate_text(const XdfStreamSurvey& one) {
 std::string stamps_text(const XdfStreamSurvey& one) {
   std::string text = fmt::format("{:.6f} to {:.6f} s, {:.1f} s of the sender's clock", *one.first,
                                  *one.last, *one.last - *one.first);
-  // LSL leaves out stamps that follow from the rate; the reader fills them in.
+  // LSL leaves out stamps that follow from the rate. The reader computes them again.
   if (one.deduced > 0) text += fmt::format("; {} deduced by the rate", grouped(one.deduced));
   return text;
 }
 
-/// The clock of a stream's sender: offset, drift and largest residual of the last line. A reset
-/// clock has several lines.
-/// LSL measures the offset between sender and recorder every few seconds. A line through these
-/// offsets is the clock.
+/// The clock of a stream's sender. LSL measures the offset between sender and recorder every few
+/// seconds, and a straight line is fitted to these offsets. If the clock was reset, there are
+/// several lines. The text states offset, drift and largest residual of the last line.
 std::string stream_clock_text(const XdfStreamSurvey& one) {
   if (one.clock.empty()) return "no clock offsets";
   double residual = 0.0;
@@ -44,7 +43,7 @@ std::string stream_clock_text(const XdfStreamSurvey& one) {
   std::string text = fmt::format("{}: {:+.6f} s, {:+.3f} ppm, residuals up to {:.3f} ms",
                                  counted(one.clock_offsets, "clock offset"), last.offset,
                                  1e6 * last.slope, 1e3 * residual);
-  // n lines mean n - 1 resets.
+  // Each reset of the clock begins a new line.
   if (one.clock.size() > 1) text += fmt::format("; restarted {} times", one.clock.size() - 1);
   return text;
 }
@@ -59,7 +58,7 @@ std::string stream_lines(const XdfStreamSurvey& one, Names names) {
                                       grouped(one.samples), rate_text(one)));
   if (one.first) text += fact_line("  stamps", stamps_text(one));
   text += fact_line("  clock", stream_clock_text(one));
-  // An EEG has up to hundreds of channels, so they are listed only if asked for.
+  // An EEG may have hundreds of channels, so they are listed only with --verbose.
   if (names == Names::no) return text;
   for (const XdfChannel& channel : s.channels) {
     const std::string unit = channel.unit.empty() ? "" : ", " + shown(channel.unit);
@@ -68,10 +67,10 @@ std::string stream_lines(const XdfStreamSurvey& one, Names names) {
   return text;
 }
 
-/// A missing value is null in JSON.
+/// A value in JSON; null if the value is missing.
 Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
-/// The JSON about a stream, with a line for each piece of its clock.
+/// The JSON about a stream, with all fitted lines of its clock.
 Json json_of(const XdfStreamSurvey& one) {
   const XdfStream& s = one.stream;
   Json json{{"id", s.id},

@@ -18,15 +18,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The names in JSON, in the order of ClockEvent::Kind and HostClockEvent::Kind.
+/// The names of events in JSON, in the order of ClockEvent::Kind and HostClockEvent::Kind.
 constexpr std::array clock_event_names{"new_boot", "step",           "slip",      "uneasy",
                                        "settled",  "host_backwards", "withdrawn", "violator",
                                        "relaxed",  "route"};
 constexpr std::array host_event_names{"suspended", "backwards", "wall_stepped"};
 
-/// The event in words, without the node's name.
-/// Sentences begin with the verb, since the node's name comes before them. "warning:" marks what
-/// needs an action.
+/// The event in words, without the node's name: the name comes before, so the words begin with a
+/// verb. "warning:" marks an event after which the user must act.
 std::string what_happened(const NodeEvent& event, const NodeNames& names) {
   using Kind = NodeEvent::Kind;
   switch (event.kind) {
@@ -35,7 +34,8 @@ std::string what_happened(const NodeEvent& event, const NodeNames& names) {
     case Kind::started:
       return "restarted";
     case Kind::restarted:
-      // A boot id tells the host that the counter began anew. An old one mixes two clocks.
+      // The counter of a node begins anew at each start, and a new boot id tells so. With the old
+      // boot id, values of two clocks would be mixed.
       return "warning: restarted with its old boot id; its firmware must choose a new boot id at "
              "each start";
     case Kind::twins:
@@ -56,18 +56,18 @@ std::string what_happened(const NodeEvent& event, const NodeNames& names) {
     case Kind::too_many:
       return fmt::format("warning: ignored, because {} nodes are connected already",
                          NodeTable::most_streams);
-    // wrong_key needs more than the kind, so it has a function of its own.
+    // wrong_key_text() gives this text, since it depends on more than the kind.
     case Kind::wrong_key:
-      break;  // see wrong_key_text()
+      break;
   }
   return {};
 }
 
-/// The text about a frame refused for its MAC. The stated node id proves nothing: any program may
-/// have sent the frame.
+/// The text about a frame whose MAC (its cryptographic checksum) is missing or wrong. The node id
+/// in such a frame proves nothing, because any program may have sent it.
 std::string wrong_key_text(const NodeEvent& event, const NodeNames& names) {
   const bool no_key = event.refusal == NodeRefusal::no_key;
-  // The three causes need three different actions.
+  // The user must do something else for each of the three causes.
   const char* what = no_key ? "frames with a MAC, but no --lab-key was given"
                      : event.refusal == NodeRefusal::no_mac ? "frames without a MAC"
                                                             : "frames signed with another key";
@@ -90,7 +90,7 @@ std::string event_text(const NodeEvent& event, const NodeNames& names) {
 }
 
 std::string event_json(const NodeEvent& event) {
-  // The keys are the same for all kinds; a kind adds those that it has.
+  // All kinds of event have these keys. Some kinds add further keys below.
   Json json{
       {"event", "node_event"}, {"kind", name_of(event.kind)}, {"warning", is_warning(event.kind)}};
   const bool is_refused = event.kind == NodeEvent::Kind::wrong_key;  // a refused node has no stream
@@ -105,13 +105,13 @@ std::string event_json(const NodeEvent& event) {
   return json_text(json);
 }
 
-/// The event in words. Kinds that need no action give an empty text.
+/// The event in words. Empty for an event after which the user need not act.
 std::string event_text(const ClockEvent& event, std::uint32_t node_id, const NodeNames& names) {
   using Kind = ClockEvent::Kind;
-  const double by_ms = 1e3 * std::abs(event.by.value_or(0.0));  // the direction is not always known
+  const double by_ms = 1e3 * std::abs(event.by.value_or(0.0));  // the sign is not always known
   std::string what;
   if (event.kind == Kind::step) {
-    // Without a size the step was found by a contradiction and not by a measurement.
+    // If the size is missing, the step was found by a contradiction and not measured.
     what = event.by ? fmt::format("warning: its counter stepped by at least {:.3f} ms", by_ms)
                     : "warning: its counter stepped, or its drift changes faster than assumed";
   } else if (event.kind == Kind::slip) {
@@ -129,7 +129,7 @@ std::string event_text(const ClockEvent& event, std::uint32_t node_id, const Nod
   } else if (event.kind == Kind::relaxed) {
     what = "its drift may change faster than assumed";
   }
-  // The kinds without a line are of use to programs only.
+  // Events without words are of use to programs only.
   return what.empty() ? "" : names.name(node_id) + ": " + what;
 }
 
@@ -145,7 +145,7 @@ std::string event_json(const ClockEvent& event, std::size_t stream, std::uint32_
   return json_text(json);
 }
 
-/// Events of this machine concern all nodes at once.
+/// An event of this machine's clock concerns all nodes at once.
 std::string event_text(const HostClockEvent& event) {
   using Kind = HostClockEvent::Kind;
   if (event.kind == Kind::suspended) {

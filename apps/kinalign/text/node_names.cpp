@@ -15,7 +15,7 @@ std::string NodeNames::short_name(std::uint32_t id) const {
 
 NodeNames node_names(const Lab& lab) {
   const auto nodes =
-      // A lab has at most one device of nodes, which stands for all of them.
+      // A lab has at most one device of inertial nodes; all nodes of the lab belong to it.
       std::find_if(lab.devices.begin(), lab.devices.end(), [](const DeviceOptions& device) {
         const auto protocol = find_protocol(device.protocol);
         return protocol && row_of(*protocol).has_node_ids;

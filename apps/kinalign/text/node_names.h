@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The names of nodes for people: the device and the place where the node is worn, else its id.
-// Users type, and programs read, the id, or "imu/7" as in topics.
+// The names of nodes for people: the device and the place on the body, or the id if no place is
+// known. In commands and in JSON a node is named by its id or by its topic, "imu/7".
 #pragma once
 
 #include "kinalign/take/lab.h"
@@ -11,14 +11,14 @@
 
 namespace kinalign {
 
-/// The names of one device's nodes. A node without a place is called by its id.
+/// The names of one device's nodes.
 struct NodeNames {
-  std::string device = "node";                  // the name if there is no lab file
-  std::map<std::string, std::string> places{};  // by id: "7" gives "waist"
+  std::string device = "node";                  // "node" if there is no lab file
+  std::map<std::string, std::string> places{};  // places by id: "7" gives "waist"
 
-  /// "waist", "7".
+  /// The place, or the id of a node without a place: "waist", "7".
   std::string short_name(std::uint32_t id) const;
-  /// "imu waist", "imu 7"
+  /// The same with the device: "imu waist", "imu 7".
   std::string name(std::uint32_t id) const { return device + " " + short_name(id); }
 };
 

@@ -19,11 +19,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The names of the device's nodes that have a place and have never sent.
-/// `nodes` of the device has id and place; the stream states the id.
+/// The names of those nodes in lab.toml that have never sent. Each element of device.nodes is the
+/// id and the place of a node; a stream states the id.
 std::vector<std::string> unseen_nodes(const DeviceOptions& device, const LabStatus& status) {
   std::vector<std::string> names;
-  for (const auto& node : device.nodes) {  // clang 14 can't hand a structured binding on
+  for (const auto& node : device.nodes) {  // clang 14 can't capture a structured binding
     const bool seen =
         std::any_of(status.streams.begin(), status.streams.end(), [&](const StreamStatus& stream) {
           return stream.stream == device.name && stream.node == node.first;
@@ -44,16 +44,16 @@ PortCounts counts_of(const DeviceOptions& device, const LabStatus& status) {
   return found == status.ports.end() ? PortCounts() : found->second;
 }
 
-/// The text about a device from which nothing has come yet.
+/// The text about a device from which no data has come yet.
 std::string nothing_yet(const DeviceOptions& device, const PortCounts& counts, std::uint16_t port) {
-  // `links` counts connections, so it is 0 for UDP.
+  // `links` counts TCP connections, so it is 0 for UDP.
   const bool linked = counts.links > 0;
   const auto transport = find_transport(device.transport);
   if (transport == Transport::tcp) {
     return fmt::format("{} {}:{} yet", linked ? "nothing has come from" : "no connection to",
                        device.address, port);
   }
-  // The device connects to this program: it may not have been started.
+  // With this transport the device connects to the recorder; the device may not be switched on.
   if (transport == Transport::tcp_listen && !linked) {
     return fmt::format("no device has connected to port {} yet", port);
   }
@@ -72,13 +72,14 @@ const NodeStatus* node_of(const StreamStatus& stream, const std::vector<NodeStat
   const NodeStatus* found = nullptr;
   for (const NodeStatus& node : nodes) {
     if (std::to_string(node.node_id) != stream.node) continue;
-    // Two nodes of one id are recorded separately. The one that sent last is shown.
+    // Two nodes with the same id are recorded separately. The status is that of the node that sent
+    // last.
     if (found == nullptr || node.last_arrival > found->last_arrival) found = &node;
   }
   return found;
 }
 
-// A node's clock comes from its receiver, any other sender's from its stream.
+// The node receiver knows the clock of a node. The stream itself has the clock of any other sender.
 std::optional<SenderClock> clock_of(const StreamStatus& stream, const NodeStatus* node) {
   if (node == nullptr) return stream.clock;
   if (!node->n || !node->stamp) return std::nullopt;
@@ -87,7 +88,7 @@ std::optional<SenderClock> clock_of(const StreamStatus& stream, const NodeStatus
 
 std::vector<std::string> unseen(const DeviceOptions& device, const LabStatus& status) {
   std::vector<std::string> names = unseen_nodes(device, status);
-  // Nodes without places are unknown in advance, so the device stands for them.
+  // If lab.toml names no nodes, the device's own name is listed instead.
   if (names.empty() && !is_seen(device, status)) names.push_back(device.name);
   return names;
 }
@@ -102,7 +103,8 @@ std::vector<std::string> unseen_lines(const Lab& lab, const LabStatus& status) {
     const std::uint16_t port = status.port_numbers.at(device.name);
     const PortCounts counts = counts_of(device, status);
     std::string what;
-    // The reason is about the whole port, so it is used only if no sender of the device is known.
+    // unusable_data() concerns the whole port. It is the reason only if no sender of the device is
+    // known.
     if (!is_seen(device, status)) what = unusable_data(counts, fmt::format("to port {}", port));
     if (what.empty()) what = status.ended ? "nothing came" : nothing_yet(device, counts, port);
     for (const std::string& name : unseen(device, status)) {
@@ -112,8 +114,8 @@ std::vector<std::string> unseen_lines(const Lab& lab, const LabStatus& status) {
   return lines;
 }
 
-/// A device is missing if none of its senders sends now; a node with a place also if only this
-/// node is silent.
+/// A device is missing if none of its senders sends now. A node with a place is missing as soon as
+/// this node is silent.
 std::vector<std::string> missing(const Lab& lab, const LabStatus& status) {
   std::vector<std::string> names;
   for (const DeviceOptions& device : lab.devices) {
@@ -125,12 +127,14 @@ std::vector<std::string> missing(const Lab& lab, const LabStatus& status) {
     for (const StreamStatus& stream : status.streams) {
       if (stream.stream != device.name) continue;
       const bool silent = is_silent(stream, status.now);
-      // A restarted program has another port and is another sender, so one that sends is enough.
+      // A sender that restarts has another port and counts as another sender. One that sends is
+      // enough.
       sends = sends || !silent;
-      // A node with a place is required by itself.
+      // Each node with a place is required.
       if (silent && !stream.place.empty()) names.push_back(name_of(stream));
     }
-    // A device with stated nodes is missing if a node is; without nodes it is missing as a whole.
+    // For a device whose nodes lab.toml names, the nodes are listed. Any other device is listed
+    // itself.
     if (!sends && device.nodes.empty()) names.push_back(device.name);
   }
   return names;
@@ -140,7 +144,7 @@ std::vector<StreamStatus> newest_of_each(const std::vector<StreamStatus>& stream
   std::vector<StreamStatus> newest;
   for (const StreamStatus& stream : streams) {
     const auto same = std::find_if(newest.begin(), newest.end(), [&](const StreamStatus& other) {
-      // A reconnecting device has a new sender of the same name each time.
+      // A device that reconnects becomes a new sender with the same name.
       return other.stream == stream.stream && other.sender == stream.sender &&
              other.node == stream.node;
     });
@@ -178,11 +182,11 @@ std::string port_line(const std::string& name, const PortCounts& counts,
   return text.empty() ? "" : fmt::format("  port of {}: {}\n", name, text);
 }
 
-/// A node's clock comes from the receiver of nodes; members that the stream states already are
+/// The clock of a node comes from the node receiver. Members that the stream already states are
 /// removed from it.
 Json json_of(const StreamStatus& stream, const LabStatus& status) {
   Json json = Json::parse(
-      // The JSON of the recording's counts is the base, so both have the same members.
+      // The object begins with the members that the recorder writes into the recording.
       to_json({stream.topic, stream.stream, stream.sender, stream.node, stream.counts}));
   if (!stream.place.empty()) json["place"] = stream.place;
   json["rate_hz"] = stream.rate_hz;
@@ -199,7 +203,7 @@ Json json_of(const StreamStatus& stream, const LabStatus& status) {
   if (node == nullptr) return json;
   Json clock = Json::parse(status_json(*node));
   for (const char* in_stream :
-       // These members are about the stream and stand in the object already.
+       // The object already has these members, for the stream.
        {"event", "stream", "node_id", "address", "accepted", "lost", "rate_hz", "battery_mv"}) {
     clock.erase(in_stream);
   }

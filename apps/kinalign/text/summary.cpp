@@ -16,16 +16,16 @@ namespace kinalign {
 
 namespace {
 
-/// The streams of the report with one name: a device, or all nodes.
-/// Nodes of one device are many streams in the report. The summary shows them as one.
+/// The streams of the report with one name. A device of nodes has many streams in the report, which
+/// the summary shows as one.
 struct Group {
-  StreamReport sum;                 // the sums over all parts
-  std::vector<StreamReport> parts;  // one, or one for each node's file
+  StreamReport sum;                 // the sums over `parts`
+  std::vector<StreamReport> parts;  // one stream, or one for each node
   std::size_t nodes = 0;
 };
 
-/// Adds a part's counts. The group's interval is the worst of its parts, and unknown if one is
-/// unknown.
+/// Adds the counts of one stream to a group. The group's interval is the widest of its streams. It
+/// is unknown if the interval of any stream is unknown.
 void add(Group& group, const StreamReport& s) {
   StreamReport& sum = group.sum;
   sum.gaps += s.gaps;
@@ -35,7 +35,8 @@ void add(Group& group, const StreamReport& s) {
   sum.inferred += s.inferred;
   sum.bridged += s.bridged;
   sum.unsure += s.unsure;
-  // One unknown part makes the whole unknown: the summary must not look better than the worst node.
+  // An unknown interval makes the group's interval unknown, so that the summary never looks better
+  // than the worst node.
   if (!s.worst_interval_ns) {
     sum.worst_interval_ns.reset();
   } else if (sum.worst_interval_ns) {
@@ -46,11 +47,11 @@ void add(Group& group, const StreamReport& s) {
   group.parts.push_back(s);
 }
 
-/// Groups the streams of the report by name; nodes of one stream are neighbours in it.
+/// Groups the streams of the report by name. Streams of one name follow each other in the report.
 std::vector<Group> groups_of(const AlignmentReport& report) {
   std::vector<Group> groups;
   for (const StreamReport& s : report.streams) {
-    // A new name begins a new group. 0 is the neutral value for the maximum.
+    // A new name begins a new group. Its interval begins with 0, because add() takes the maximum.
     if (groups.empty() || groups.back().sum.stream != s.stream) {
       Group group;
       group.sum.stream = s.stream;
@@ -67,16 +68,18 @@ std::string name_of(const Group& group) {
   return fmt::format("{} ({})", group.sum.stream, counted(group.nodes, "node"));
 }
 
-/// Orders streams by the half-width of their interval in time: an unknown one is the largest.
+/// The half-width of a stream's interval in time, for sorting. An unknown interval counts as the
+/// widest.
 std::int64_t doubt(const StreamReport& s) { return s.worst_interval_ns.value_or(INT64_MAX); }
 
-/// The samples that a user should not trust: invalid or interpolated over loss.
+/// The number of samples that a user should not trust: invalid ones, and those interpolated across
+/// lost data.
 std::uint64_t harm(const StreamReport& s) { return s.invalid + s.bridged; }
 
-/// ", worst node: wrist_left" if the nodes differ in `measure`.
+/// The text ", worst node: wrist_left". Empty if `measure` is the same for all nodes.
 template <class Measure>
 std::string worst_node(const Group& group, Measure measure) {
-  // Equal nodes have no worst one.
+  // If all nodes are equal, there is no worst node.
   const auto less = [measure](const auto& a, const auto& b) { return measure(a) < measure(b); };
   const auto [least, most] = std::minmax_element(group.parts.begin(), group.parts.end(), less);
   if (measure(*least) == measure(*most)) return "";
@@ -89,30 +92,31 @@ std::string time_text(const Group& group, const Console& console) {
   if (group.sum.unsure > 0) {
     sure += ", " + share_text(group.sum.unsure, group.sum.samples) + " unknown";
   }
-  // The colour is that of a warning: without an interval the error of the times is not known.
+  // The text has the colour of a warning, because the error of some or all times is not known.
   if (!known || group.sum.unsure > 0) sure = console.paint(Colour::warning, sure);
   return harmless(name_of(group)) + " " + sure + worst_node(group, doubt);
 }
 
-/// The line about time: the least certain stream first. The reference is left out.
+/// The line about time. The least certain stream comes first. The reference stream is left out.
 std::string time_line(std::vector<Group> groups, const std::string& reference,
                       const Console& console) {
   std::stable_sort(groups.begin(), groups.end(),
                    [](const Group& a, const Group& b) { return doubt(a.sum) > doubt(b.sum); });
   std::vector<std::string> texts;
   for (const Group& group : groups) {
-    // The reference defines the grid, so its time has no error against it.
+    // The reference stream gives the times of the take's frames, so it has no error in time.
     if (group.sum.stream != reference) texts.push_back(time_text(group, console));
   }
   return texts.empty() ? "" : fmt::format("  time   {}\n", fmt::join(texts, "   "));
 }
 
-/// The line about a stream that was moved into another's space, with the joint of the largest
-/// residual.
+/// The line about a stream that was moved into the coordinates of another stream. It names the
+/// joint with the largest remaining distance.
 std::string space_line(const SpaceReport& s) {
   const Eigen::AngleAxisd turn(s.transform.rotation);
   std::string how = "root onto root in every frame";
-  // The three methods of moving a stream: per frame (paper), fitted, or given.
+  // A stream is moved in one of three ways: frame by frame (root onto root), by one fitted
+  // transform, or by a transform that the user gave.
   if (s.method == "fit") how = "fitted once per take";
   if (s.method == "given") how = "as given";
   std::string text =
@@ -120,7 +124,7 @@ std::string space_line(const SpaceReport& s) {
                   harmless(s.stream), harmless(s.onto), 100.0 * s.after_m, 100.0 * s.before_m,
                   turn.angle() * 180.0 / std::numbers::pi, how);
   if (!s.joints.empty()) {
-    // The report lists the joints with the largest residual first.
+    // The report lists the joints by their remaining distance, the largest first.
     const JointResidual& worst = s.joints.front();
     text +=
         fmt::format("; worst joint: {} {:.1f} cm", harmless(worst.joint), 100.0 * worst.after_m);
@@ -131,7 +135,7 @@ std::string space_line(const SpaceReport& s) {
 /// The line about a stream's gaps and doubtful samples. Empty if there are none.
 std::string gap_line(const Group& group) {
   const StreamReport& s = group.sum;
-  // A stream without a fault has no line, which keeps the summary short.
+  // A stream without such samples has no line, which keeps the summary short.
   if (s.gaps == 0 && harm(s) == 0 && s.inferred == 0) return "";
   std::vector<std::string> parts;
   if (s.gaps > 0) {
@@ -148,11 +152,11 @@ std::string gap_line(const Group& group) {
                      worst_node(group, harm));
 }
 
-/// The lines about gaps, the stream with the largest share of doubtful samples first.
+/// The lines about gaps. The stream with the largest share of doubtful samples comes first.
 std::string gap_lines(std::vector<Group> groups) {
   const auto part = [](const Group& g) {
-    // The share decides and not the count, since streams have different rates. The maximum avoids a
-    // division by zero.
+    // Streams have different rates, so the share of doubtful samples decides and not their number.
+    // The maximum avoids a division by zero.
     return static_cast<double>(harm(g.sum)) / std::max(1.0, static_cast<double>(g.sum.samples));
   };
   std::stable_sort(groups.begin(), groups.end(),
@@ -162,9 +166,9 @@ std::string gap_lines(std::vector<Group> groups) {
   return text;
 }
 
-/// The most severe findings, a line each. Longer lists are left to `kinalign info`.
+/// The lines about the most severe findings. `kinalign info` lists all findings.
 std::string note_lines(const Findings& findings, const Console& console) {
-  // The list is expected to be sorted by severity.
+  // The caller has sorted the findings by severity.
   constexpr std::size_t most = 5;
   std::string text;
   for (std::size_t k = 0; k < std::min(most, findings.size()); ++k) {
@@ -192,7 +196,7 @@ std::string summary(const AlignmentReport& report, const std::string& out, const
   for (const SpaceReport& s : report.spaces) text += space_line(s);
   text += gap_lines(groups);
   text += note_lines(report.findings, console);
-  // The full report is in the take.
+  // The take contains the full report.
   if (!out.empty()) text += fmt::format("  see    kinalign info {}\n", harmless(out));
   return text;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The result of an alignment in the few lines that people read first, the worst first.
+// Describes an alignment in the few lines that people read first. The worst facts come first.
 #pragma once
 
 #include "kinalign/take/report.h"
@@ -11,7 +11,8 @@ namespace kinalign {
 
 class Console;
 
-/// `out` is the take's file; empty: nothing was written. Colours are the console's.
+/// The summary of an alignment. `out`: the take's file; empty if no file was written. The console
+/// decides about colours.
 std::string summary(const AlignmentReport& report, const std::string& out, const Console& console);
 
 }  // namespace kinalign

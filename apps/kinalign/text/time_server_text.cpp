@@ -24,33 +24,34 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The order is that of NTP's leap indicator, 0 to 3 (RFC 5905).
+// The names of NTP's leap indicator, in the order of its values 0 to 3 (RFC 5905).
 constexpr std::array<std::string_view, 4> leap_names{"none", "insert", "delete", "unsynchronised"};
 
 std::string_view name_of(NtpLeap leap) { return leap_names[static_cast<std::size_t>(leap)]; }
 
-/// A reference id is shown like an IPv4 address, as NTP programs do.
+/// The id of the server's time source. It is written like an IPv4 address, as NTP programs do.
 std::string reference_text(std::uint32_t id) {
   return fmt::format("{}.{}.{}.{}", id >> 24, id >> 16 & 0xff, id >> 8 & 0xff, id & 0xff);
 }
 
-/// Adds the state of the clock to an event.
+/// Adds the state of the server's clock to a JSON event.
 std::string with_state(Json event, const NtpServerState& state) {
   event.update(Json{{"leap", name_of(state.leap)},
                     {"stratum", state.stratum},
                     {"reference_id", reference_text(state.reference_id)},
-                    // Delays are in milliseconds. The precision is a power of two, in seconds.
+                    // Delays are in milliseconds. The precision is the exponent of a power of two,
+                    // in seconds.
                     {"root_delay_ms", 1e3 * seconds(state.root_delay)},
                     {"root_dispersion_ms", 1e3 * seconds(state.root_dispersion)},
                     {"precision_log2_s", state.precision}});
   return json_text(event);
 }
 
-/// The settings that clients need.
-/// Lines to copy into the settings of a client. Without a known address the word ADDRESS stands in.
+/// Lines that a user copies into the settings of a client. If no address of this host is known, the
+/// word ADDRESS stands for it.
 std::string client_lines(const ServedPort& served) {
   const std::string host = served.reachable.empty() ? "ADDRESS" : served.reachable.front();
-  // Most small clients can't set a port.
+  // Most small NTP clients can't use a port other than 123.
   if (served.port != 123) {
     return fmt::format(
         "  clients  chrony: server {} port {} iburst\n"
@@ -72,20 +73,21 @@ std::string node_lines(const ServedPort& served) {
 }  // namespace
 
 std::string clock_text(const NtpServerState& state) {
-  // This state comes first, since all other members then mean nothing.
+  // An unsynchronised clock is checked first, because all other members of its state mean nothing.
   if (state.leap == NtpLeap::unsynchronised) {
     return "not synchronised and no reference: clients will not follow it";
   }
   const std::string leap =
       state.leap == NtpLeap::none ? "" : ", a leap second at the end of the day (UTC)";
-  // --local-stratum makes the machine the reference of the lab.
+  // With --local-stratum this machine's own clock is the reference of the lab.
   if (state.reference_id == local_reference_id) {
     return fmt::format("not synchronised: this machine is the reference, stratum {}{}",
                        state.stratum, leap);
   }
-  const Duration most = state.root_dispersion + state.root_delay / 2;  // RFC 5905: root distance
+  // the "root distance" of RFC 5905
+  const Duration most = state.root_dispersion + state.root_delay / 2;
   const double ms = 1e3 * seconds(most);
-  // Below 0.1 ms microseconds are easier to read.
+  // Errors below 0.1 ms are shown in microseconds.
   const std::string within =
       ms < 0.1 ? fmt::format("{:.0f} us", 1e3 * ms) : fmt::format("{:.1f} ms", ms);
   return fmt::format("synchronised within {}, stratum {}{}", within, state.stratum, leap);
@@ -106,7 +108,7 @@ std::string start_json(const ServedPort& served, const NtpServerState& state) {
             {"addresses", served.addresses},
             {"port", served.port},
             {"reachable", served.reachable}};
-  // Both members exist only if nodes are served.
+  // Both members exist only if the server also receives nodes.
   if (served.node_port) {
     json["node_port"] = *served.node_port;
     json["node_keys"] = served.keyed;
@@ -119,7 +121,7 @@ std::string clock_json(const NtpServerState& state) {
 }
 
 std::string utc_text(Time t) {
-  // Fractions of a second are cut, as in the log of chronyd.
+  // Fractions of a second are cut off, as in the log of chronyd.
   const auto whole = std::chrono::floor<std::chrono::seconds>(t.time_since_epoch());
   return fmt::format("{:%FT%TZ}", fmt::gmtime(static_cast<std::time_t>(whole.count())));
 }
@@ -130,7 +132,7 @@ std::string live_line(Time now, std::string_view what) {
 
 std::string counts_text(const NtpCounts& counts) {
   std::string text = counted(counts[NtpOutcome::answered], "NTP request") + " answered";
-  // Outcome 0 is "answered", which is printed above.
+  // Outcome 0 is "answered". It is printed above, so the loop begins at 1.
   for (std::size_t i = 1; i < ntp_outcomes; ++i) {
     const auto outcome = static_cast<NtpOutcome>(i);
     if (counts[outcome] == 0) continue;
@@ -141,7 +143,7 @@ std::string counts_text(const NtpCounts& counts) {
 
 std::string counts_json(const NtpCounts& counts, const std::string& event, double elapsed_s) {
   Json json{{"event", event},
-            // Three decimals are milliseconds.
+            // The time is rounded to milliseconds.
             {"elapsed_s", std::round(elapsed_s * 1e3) / 1e3},
             {"received", counts.total()}};
   for (std::size_t i = 0; i < ntp_outcomes; ++i) {
