@@ -11,9 +11,9 @@ namespace kinalign {
 
 namespace {
 
-/// The options of `kinalign dataset add`. Empty ids stand for those in the file.
+/// The options of `kinalign dataset add`. If subject or action is empty, the id in the file counts.
 struct Add {
-  std::vector<std::string> folder, files;  // folder: one
+  std::vector<std::string> folder, files;  // `folder` has one word
   std::string subject, action;
   bool copy = false;
 };  // --copy: raw files are copied below sourcedata/
@@ -31,21 +31,22 @@ Usage describe_add(Add& o) {
   return usage;
 }
 
-/// Adds each file in turn. The takes added before a failure stay added.
+/// Adds each file in turn. If one fails, the takes that were added before stay in the data set.
 Result<int> run_add(Add& o, Call& call) {
   const std::string folder = folder_of(o.folder);
   FileSystem& files = call.surroundings.files;
-  // The catalogue is read once for all files.
+  // dataset.toml is read once for all files.
   const Catalogue catalogue = KA_TRY(load_catalogue(files, folder));
   call.console.advise(
       "files before this one were added; run the same command again after the repair");
-  // One adder serves all files, so each file sees the takes that were added before it.
+  // All files use the same adder, because it remembers the takes that were added before.
   TakeAdder adder(files, folder, catalogue);
   auto json = nlohmann::ordered_json::array();
   for (const std::string& path : o.files) {
     const AddRequest request{path, o.subject, o.action, o.copy};
     const Added added = KA_TRY(adder.add(request, call.console.progress()));
-    // A file that was added before is no fault: the same command may be repeated after a failure.
+    // A file that is already in the data set is no error, so that the same command may be repeated
+    // after a failure.
     call.console.print(harmless(path + (added.was_there ? " was already added: " : ": ") +
                                 to_string(added.name) + "\n"));
     json.push_back(

@@ -14,12 +14,12 @@ namespace kinalign {
 
 namespace {
 
-/// The options of `kinalign dataset build`. The share is not a flag: it comes from the environment
-/// that a cluster sets.
+/// The options of `kinalign dataset build`. On a cluster, environment variables and no flag say
+/// which part of the takes this process builds.
 struct Build {
-  std::vector<std::string> folder;  // one
+  std::vector<std::string> folder;  // one word
   bool all = false;
-  std::int64_t index_offset = 0;  // added to the number of a job in a Slurm array
+  std::int64_t index_offset = 0;  // added to the job's number in a Slurm array
 };
 
 Usage describe_build(Build& o) {
@@ -32,8 +32,8 @@ Usage describe_build(Build& o) {
   return usage;
 }
 
-/// The reason for building a take, as printed.
-/// The words are in the text and in the JSON, so programs may depend on them.
+/// The reason why a take is built, in words. Text and JSON use the same words, since programs may
+/// depend on them.
 std::string_view words_of(BuildReason reason) {
   switch (reason) {
     case BuildReason::first:
@@ -52,8 +52,8 @@ std::string_view words_of(BuildReason reason) {
   return "up to date";
 }
 
-/// Prints the plan of --dry-run.
-/// The plan has the longest takes first. A take without a line is up to date.
+/// Prints the plan of --dry-run: the takes that would be built, the longest first. Takes that are
+/// up to date are not listed.
 Result<int> show_plan(const BuildPlan& plan, Call& call) {
   auto json = nlohmann::ordered_json::array();
   for (const BuildJob& job : plan.jobs) {
@@ -69,16 +69,16 @@ Result<int> show_plan(const BuildPlan& plan, Call& call) {
   return 0;
 }
 
-/// Counts the built takes, for the text and the JSON.
-/// `usable` and `bad` count verdicts of takes made in this run only. The JSON lists every take, in
-/// the order in which takes were finished.
+/// Counts the built takes. `usable` and `bad` count only the takes built in this run. The JSON
+/// lists every take, in the order in which the takes were finished.
 struct Tally {
   std::size_t made = 0, failed = 0, usable = 0, bad = 0;
   nlohmann::ordered_json takes = nlohmann::ordered_json::array();
 
   void add(const Built& one, Console& console) {
     const std::string name = to_string(one.name);
-    // A take that can't be made is one line. The others go on, and the exit code is 1.
+    // A take that can't be built gets one line. The other takes are still built, and the exit code
+    // is 1.
     if (!one.summary) {
       ++failed;
       console.print(
@@ -89,7 +89,7 @@ struct Tally {
     ++made;
     usable += one.summary->quality == Quality::usable ? 1 : 0;
     bad += one.summary->quality == Quality::bad ? 1 : 0;
-    // Good takes are shown only with --verbose, since a build may have thousands of them.
+    // A build may have thousands of takes, so good ones are listed only with --verbose.
     console.detail(
         fmt::format("{}: {} frames, {}", name, one.summary->frames, one.summary->verdict()));
     takes.push_back(
@@ -97,24 +97,26 @@ struct Tally {
   }
 };
 
-/// Builds this process's share of the takes. Only a process with the whole build updates the index.
+/// Builds the takes that fall to this process. Only a process that builds all takes updates the
+/// index.
 Result<int> run_build(Build& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string folder = folder_of(o.folder);
   const Catalogue catalogue = KA_TRY(load_catalogue(files, folder));
-  // share_of() reads the variables of a cluster; without them the share is the whole build.
+  // share_of() reads the environment variables of a cluster. Without them this process builds all
+  // takes.
   const BuildOptions options{call.jobs,
                              KA_TRY(share_of(call.surroundings.variable, o.index_offset)), o.all};
   Tally tally;
-  // build() calls both functions from its threads, but never two at once, so the tally needs no
-  // lock.
+  // The build calls both functions from its threads, but never two at the same time. The tally
+  // therefore needs no lock.
   const BuildWatch watch{call.console.progress(),
                          [&](const Built& one) { tally.add(one, call.console); }};
   const BuildPlan plan = KA_TRY(plan_build(files, folder, catalogue, options, watch.progress));
   if (call.common.dry_run) return show_plan(plan, call);
   KA_TRY(build(files, folder, catalogue, plan, watch));
-  // Several shares would write the same index at once. The next verb that opens it reads the new
-  // summaries anyway.
+  // Several processes would write the index at the same time, so they leave it. The next verb that
+  // opens the index reads the new summaries.
   if (options.share.size == 1) KA_TRY(open_index(folder, call));
   const std::string share =
       options.share.size == 1
@@ -123,7 +125,7 @@ Result<int> run_build(Build& o, Call& call) {
   call.console.print(harmless(fmt::format(
       "{}: {} made{}, {} up to date{}\n", folder, counted(tally.made, "take"),
       tally.failed > 0 ? fmt::format(", {} failed", tally.failed) : "", plan.up_to_date, share)));
-  // A command follows that lists the takes to look at, with the worst first.
+  // The last line is a command that lists the takes to look at, the worst first.
   if (tally.bad + tally.usable > 0) {
     call.console.print(
         fmt::format("  {} bad, {} usable: kinalign dataset list {} --columns name,verdict,worst "

@@ -18,7 +18,7 @@ Positional folder_word(std::vector<std::string>& folder) {
 
 std::string folder_of(const std::vector<std::string>& words) {
   std::string folder = words.front();
-  // A single '/' is the root and stays.
+  // The root folder "/" keeps its '/'.
   while (folder.size() > 1 && folder.ends_with('/')) folder.pop_back();
   return folder.empty() ? "." : folder;
 }
@@ -34,8 +34,8 @@ Field split_field(std::string& split) {
 
 Result<DatasetIndex> open_index(const std::string& folder, Call& call) {
   DatasetIndex index = KA_TRY(DatasetIndex::open(call.surroundings.files, folder));
-  // A summary that can't be read leaves its take out of all tables, so the user must see it in any
-  // case.
+  // A take whose summary can't be read is missing in all tables. The user must therefore always see
+  // this finding.
   for (const Finding& finding : index.findings()) {
     call.console.note(harmless(std::string(to_string(finding.severity)) + ": " +
                                to_string(finding.what) + ": " + finding.meaning));
@@ -54,15 +54,16 @@ Result<void> print_not_built(const DatasetIndex& index, const std::string& folde
 
 Result<std::vector<SplitTake>> built_takes(FileSystem& files, const std::string& folder,
                                            const DatasetIndex& index, const std::string& where) {
-  // The brackets keep an "or" of the user's condition from swallowing what may follow it.
+  // The brackets keep an "or" in the user's condition apart from the rest of the query.
   const std::string condition = where.empty() ? "" : " where (" + where + ")";
   const Table names = KA_TRY(index.select("select name from takes" + condition + " order by name"));
   std::vector<SplitTake> takes;
   for (const auto& row : names.rows) {
-    // A view may give any type. A row that is no take's name is skipped.
+    // A row is skipped if its value is not the name of a take: a view of SQL may contain values of
+    // any type.
     const auto* text = std::get_if<std::string>(&row.front());
     const auto name = text == nullptr ? std::nullopt : parse_take_name(*text);
-    // The index has only a part of a summary; splits and exports need the whole one.
+    // The index has only a part of each summary, and splits and exports need all of it.
     if (name) takes.push_back({*name, KA_TRY(read_summary(files, folder, *name))});
   }
   return takes;
@@ -77,8 +78,8 @@ std::string first_lines(const std::vector<std::string>& lines, std::size_t most,
 }
 
 bool print_findings(const Findings& findings, Call& call) {
-  // Findings of a data set of thousands of takes would fill the terminal. The exit code counts all
-  // of them.
+  // Thousands of findings would fill the terminal, so only the first ones are printed. The exit
+  // code counts all of them.
   constexpr std::size_t shown_findings = 8;
   std::vector<std::string> lines;
   for (const Finding& one : findings) {
@@ -90,7 +91,7 @@ bool print_findings(const Findings& findings, Call& call) {
                      [](const Finding& one) { return one.severity == Severity::error; });
 }
 
-// The lines follow others of a verb, so each begins with two spaces.
+// Each line begins with two spaces, because it stands below a line of the verb.
 std::string splits_text(const std::vector<SplitFile>& splits) {
   std::string out;
   for (const SplitFile& one : splits) {

@@ -20,18 +20,19 @@ namespace kinalign {
 
 namespace {
 
-/// Streams that did not fit into a format are listed up to this number of kinds.
+/// The number of kinds of streams that are listed because they did not fit into the format.
 constexpr std::size_t shown_streams = 8;
 
-/// The options of `kinalign dataset export`. `split` is legal only for a format with parts.
+/// The options of `kinalign dataset export`. `split` is allowed only for a format that stores the
+/// parts of a split.
 struct Export {
   std::vector<std::string> folder;
   std::string format = "npz", where, split;
   bool release = false;
 };
 
-/// The names are the choices of --format. They come from the list of formats, so a new format needs
-/// no change here.
+/// The choices of --format. They come from the library's list of formats, so a new format needs no
+/// change here.
 std::vector<std::string> format_names() {
   std::vector<std::string> out;
   for (const ExportFormat& one : export_formats()) out.push_back(one.name);
@@ -52,7 +53,7 @@ Usage describe_export(Export& o) {
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
     if (common.out.empty())
       return Failure(Error{"-o", 0, "-o FOLDER, which must not exist yet", "none"});
-    // Only WebDataset stores parts: each part is a set of archives of its own.
+    // Only WebDataset stores the parts of a split: each part has its own archives.
     if (o.split.empty() || o.format == "webdataset") return {};
     return Failure(
         Error{"--split", 0, "--format webdataset, the only format with parts", o.format});
@@ -60,17 +61,18 @@ Usage describe_export(Export& o) {
   return usage;
 }
 
-/// The takes of the export, each with its part of the split. Takes outside the split are left out.
+/// The takes to export, each with its part of the split. Takes that the split does not name are
+/// left out.
 Result<ExportJob> job_of(const Export& o, const DatasetIndex& index, Call& call) {
   FileSystem& files = call.surroundings.files;
   ExportJob job{folder_of(o.folder), call.common.out, o.format, o.release, {}};
-  // The folder's name is used to build paths, which must not get two '/'.
+  // A '/' at the end is removed, because paths are built from the folder's name.
   while (job.target.size() > 1 && job.target.ends_with('/')) job.target.pop_back();
   auto takes = KA_TRY(built_takes(files, job.folder, index, o.where));
   std::map<TakeName, std::string> part_of;
   if (!o.split.empty()) {
-    // A split is checked against all takes, also those that --where leaves out: otherwise every
-    // missing take would be an error.
+    // The split is checked against all takes, even those that --where leaves out. Otherwise each
+    // take that is left out would be an error of the split.
     const auto all = o.where.empty() ? takes : KA_TRY(built_takes(files, job.folder, index, ""));
     const Split split = KA_TRY(read_good_split(files, o.split, all));
     for (const SplitPart& part : split.parts) {
@@ -81,14 +83,14 @@ Result<ExportJob> job_of(const Export& o, const DatasetIndex& index, Call& call)
     const auto part = part_of.find(take.name);
     if (!o.split.empty() && part == part_of.end()) continue;
     job.takes.push_back(
-        // Without a split every take is in one part, "takes".
+        // Without a split all takes are in one part, "takes".
         {take.name, std::move(take.summary), part == part_of.end() ? "takes" : part->second});
   }
   return job;
 }
 
-/// The names of streams and nodes, which every format writes into its files.
-/// A name of a stream or a node can hold a person's name, so a release looks at them, too.
+/// The names of streams and nodes, which every format writes into its files. Such a name may
+/// contain a person's name, so --release checks them.
 std::set<std::string> names_in(const ExportJob& job) {
   std::set<std::string> out;
   for (const ExportTake& take : job.takes) {
@@ -100,9 +102,8 @@ std::set<std::string> names_in(const ExportJob& job) {
   return out;
 }
 
-/// Prints a line for each reason, with the number of takes.
-/// Streams are lost for few reasons but in many takes, so the lines are grouped by reason. Returns
-/// the whole list for the JSON.
+/// Prints why streams were left out: a line for each reason, with the number of takes. Returns the
+/// complete list for the JSON.
 nlohmann::ordered_json print_left_out(const ExportMade& made, Call& call) {
   std::map<std::string, std::vector<std::string>> takes;
   for (const LeftOutStream& one : made.left_out) takes[one.why].push_back(to_string(one.name));
@@ -115,17 +116,17 @@ nlohmann::ordered_json print_left_out(const ExportMade& made, Call& call) {
   return takes;
 }
 
-/// Exports the takes. With --release nothing is written if a text could identify a person.
+/// Exports the takes. With --release no file is written if a text could identify a person.
 Result<int> run_export(Export& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const DatasetIndex index = KA_TRY(open_index(folder_of(o.folder), call));
   const ExportJob job = KA_TRY(job_of(o, index, call));
-  // The findings are of two kinds: texts that may identify people, and those of the export itself.
+  // `findings` has two kinds: texts that may identify people, and findings of the export itself.
   Findings findings;
   if (o.release) {
     findings = look_for_people(index.catalogue(), job.folder + "/dataset.toml", names_in(job));
   }
-  // Publication can't be undone. A suspicion is therefore enough to stop before the first file.
+  // Publication can't be undone, so one suspicious text stops the export before the first file.
   if (print_findings(findings, call)) {
     call.console.print("nothing was written: the texts listed as errors may identify a person\n");
     call.console.print_json(
@@ -139,10 +140,10 @@ Result<int> run_export(Export& o, Call& call) {
       "{}: {}, {}\n", job.target, counted(job.takes.size(), "take"), counted(made.files, "file"))));
   const auto formats = export_formats();
   const ExportFormat& format = *find_named(formats, o.format);
-  // Every format loses something. The line is printed always, so that nobody has to look it up.
+  // No format can store everything. The line "lost" states what this format leaves out.
   call.console.print(fmt::format("lost   {}\n", format.lost));
   const auto left_out = print_left_out(made, call);
-  // The files exist already at this point. An error among these findings changes only the exit
+  // The files have been written already, so an error among these findings changes only the exit
   // code.
   const bool has_error = print_findings(made.findings, call);
   findings.insert(findings.end(), made.findings.begin(), made.findings.end());
@@ -157,7 +158,7 @@ Result<int> run_export(Export& o, Call& call) {
   return has_error ? 1 : 0;
 }
 
-/// The text of the help page, made from the same list as the choices.
+/// The text about formats in the help page, made from the same list as the choices of --format.
 std::string formats_text() {
   std::string out;
   for (const ExportFormat& one : export_formats()) {
