@@ -19,18 +19,18 @@ namespace kinalign {
 
 namespace {
 
-/// The options of `kinalign dataset import`. An empty text or a 0 leaves the choice to the corpus
-/// or its files.
+/// The options of `kinalign dataset import`. An empty text or 0 means that the corpus or its files
+/// decide.
 struct Import {
   std::vector<std::string> folder, sources;
   std::string from = "auto", subject, action, up;
-  double metres_per_unit = 0.0;  // 0: the format's own
+  double metres_per_unit = 0.0;  // 0: as the file format states it
   bool copy = false;
 };
 
 /// The command line of `kinalign dataset import`.
 Usage describe_import(Import& o) {
-  // "auto" is not in the library's list: an empty kind stands for it.
+  // The library's list of corpora does not contain "auto"; an empty kind stands for it there.
   std::vector<std::string> kinds{"auto"};
   for (const std::string& name : corpus_kind_names()) kinds.push_back(name);
   Usage usage;
@@ -52,16 +52,16 @@ Usage describe_import(Import& o) {
   return usage;
 }
 
-/// The first words, and the end of their line.
+/// The first `most` words, joined by commas, and the end of the line.
 std::string first_words(const std::vector<std::string>& words, std::size_t most) {
   const auto end = words.begin() + static_cast<std::ptrdiff_t>(std::min(most, words.size()));
   return fmt::format("{}{}\n", fmt::join(words.begin(), end, ", "),
                      words.size() > most ? ", ..." : "");
 }
 
-/// A line for each reason: "10 without Vicon left out: m03_s03_e01, m03_s03_e02, m03_s03_e03, ...".
-/// A corpus may leave out thousands of files. Three names show the kind, and the JSON has all of
-/// them.
+/// A line for each reason why files were left out: "10 without Vicon left out: m03_s03_e01,
+/// m03_s03_e02, m03_s03_e03, ...". A corpus may have thousands of such files, so each line names
+/// three of them. The JSON names all.
 std::string left_out_lines(const std::vector<LeftOut>& all) {
   std::map<std::string, std::vector<std::string>> by_reason;
   for (const LeftOut& one : all) by_reason[one.why].push_back(one.what);
@@ -72,11 +72,11 @@ std::string left_out_lines(const std::vector<LeftOut>& all) {
   return text;
 }
 
-/// Names of the corpus, each with its id in the data set.
+/// Names in the corpus, each with the id that it got in the data set.
 using Changed = std::vector<std::pair<std::string, std::string>>;
 
-/// `what`: "people" or "actions". The words of a corpus are often no legal ids, and the user must
-/// be able to find them again.
+/// The line about names that became other ids. Many names of a corpus are not allowed as ids, and
+/// the user must be able to find them again. `what`: "people" or "actions".
 std::string changed_line(std::string_view what, const Changed& changed) {
   if (changed.empty()) return "";
   std::vector<std::string> words;
@@ -90,8 +90,8 @@ nlohmann::ordered_json json_of(const Changed& changed) {
   return out;
 }
 
-/// Prints the result of an import as JSON.
-/// `takes` counts new and old takes; "added" is their difference.
+/// Prints the result of an import as JSON. made.takes also counts takes that were there before;
+/// "added" counts only new ones.
 void print_json(const Imported& made, Console& console) {
   auto left_out = nlohmann::ordered_json::array();
   for (const LeftOut& one : made.left_out) {
@@ -110,7 +110,7 @@ void print_json(const Imported& made, Console& console) {
                                1));
 }
 
-/// Imports a corpus. The advice to run it again is set only once a take was added.
+/// Imports a corpus. The advice to run the command again is set once a take has been added.
 Result<int> run_import(Import& o, Call& call) {
   const std::string folder = folder_of(o.folder);
   Console& console = call.console;
@@ -125,9 +125,9 @@ Result<int> run_import(Import& o, Call& call) {
   const Imported made =
       KA_TRY(import_corpus(call.surroundings.files, folder, request, console.progress(),
                            [&](std::uint64_t done, std::uint64_t takes) {
-                             // The function is called after each take. A line for every hundred
-                             // shows that a long import is alive, also in a log file.
-                             // Before the first take nothing was changed.
+                             // This function is called after each take. A line for every hundredth
+                             // take shows that a long import goes on, also in a log file. Before
+                             // the first take the data set is unchanged, so no advice is needed.
                              if (done == 1) {
                                console.advise(
                                    "some takes are in the data set; run the same command again to "

@@ -32,18 +32,18 @@ Usage describe_init(Init& o) {
   return usage;
 }
 
-/// Writes dataset.toml; an existing one is never overwritten.
+/// Writes dataset.toml. An existing file is never overwritten.
 Result<int> run_init(Init& o, Call& call) {
   const std::string folder = folder_of(o.folder);
   KA_TRY(make_folders(folder));
-  // weakly_canonical() also resolves "." and "..", whose last part would be no name for a data set.
+  // The data set is named after its folder. weakly_canonical() replaces "." and ".." by the real
+  // name.
   std::error_code fault;
   const std::string own = std::filesystem::weakly_canonical(folder, fault).filename().string();
   const std::string path = folder + "/" + std::string(catalogue_file);
   const std::string text =
       KA_TRY(catalogue_template(o.template_name, o.name.empty() ? own : o.name));
-  // Overwrite::no makes a repeated call fail without a loss: the file is written by hand from now
-  // on.
+  // People edit this file by hand, so it must not be overwritten: a second call fails.
   KA_TRY(write_whole(call.surroundings.files, path, text, Overwrite::no));
   call.console.print(harmless(
       path +

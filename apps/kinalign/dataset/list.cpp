@@ -15,19 +15,19 @@ namespace kinalign {
 
 namespace {
 
-// These columns answer the first question about a data set: which takes are there, and which are
-// bad.
+// These columns answer the first question about a data set: which takes it has, and which of them
+// are bad.
 constexpr const char* usual_columns =
     "name,subject,class,action,frames,seconds,kinect,imu,residual_cm,verdict";
 
-/// The flags that list and query share.
+/// The options that `list` and `query` share.
 struct Shown {
   std::vector<std::string> folder;
   std::string columns = usual_columns, sort, format = "text";
   std::int64_t limit = 0;
 };
 
-/// The flags that list and query share.
+/// The flags that `list` and `query` share.
 Fields fields_of(Shown& o) {
   return {text_flag("columns", "comma-separated, or all", &o.columns, "COLUMNS"),
           text_flag(
@@ -38,15 +38,15 @@ Fields fields_of(Shown& o) {
           format_field(o.format)};
 }
 
-/// The options of `kinalign dataset list`: filters for people who know no SQL. All given filters
-/// must hold.
+/// The options of `kinalign dataset list`: filters for people who do not know SQL. A take is listed
+/// if it passes all given filters.
 struct List {
   Shown shown;
   std::string subject, class_id, action, verdict;
   std::vector<std::string> modality;
 };
 
-/// The options of `kinalign dataset query`: one condition, or one whole SELECT.
+/// The options of `kinalign dataset query`: either a condition or a whole SELECT of SQL.
 struct Query {
   Shown shown;
   std::vector<std::string> words;
@@ -59,8 +59,8 @@ std::vector<std::string> column_names() {
   return names;
 }
 
-/// Names of columns can't be values of a '?', so they go into the text of the query. Only known
-/// names may get there.
+/// Returns the column's name if it exists. SQL does not allow '?' in place of a column's name, so
+/// the name becomes part of the query's text. Only known names may do so.
 Result<std::string> checked_column(const std::string& name, const char* flag) {
   const std::vector<std::string> known = column_names();
   if (std::find(known.begin(), known.end(), name) != known.end()) return name;
@@ -69,7 +69,7 @@ Result<std::string> checked_column(const std::string& name, const char* flag) {
   return Failure(std::move(error));
 }
 
-/// The columns of a flag for a SELECT: "name,frames" gives "name, frames".
+/// Turns the columns of a flag into text for a SELECT: "name,frames" gives "name, frames".
 Result<std::string> chosen_columns(const std::string& text) {
   if (text == "all") return fmt::format("{}", fmt::join(column_names(), ", "));
   // An empty name between two commas is refused as an unknown column.
@@ -80,22 +80,23 @@ Result<std::string> chosen_columns(const std::string& text) {
   return fmt::format("{}", fmt::join(out, ", "));
 }
 
-/// The text after "order by". Verdicts are sorted by severity, not by the alphabet.
+/// The text after "order by". Verdicts are sorted by severity and not by the alphabet.
 Result<std::string> order_text(const std::string& sort) {
   if (sort.empty()) return std::string("name");
-  // A minus at the end, since one at the begin would look like a flag.
+  // The minus for descending order stands at the end, since a minus in front would look like a
+  // flag.
   const bool down = sort.ends_with('-');
   const std::string column =
       KA_TRY(checked_column(sort.substr(0, sort.size() - (down ? 1 : 0)), "--sort"));
-  // The alphabet would put "good" between "bad" and "usable".
+  // By the alphabet "good" would stand between "bad" and "usable".
   const std::string key = column == "verdict"
                               ? "case verdict when 'bad' then 0 when 'usable' then 1 else 2 end"
                               : column;
-  // The name is the last key, so equal rows always have the same order.
+  // Equal rows are sorted by name, so that their order is always the same.
   return key + (down ? " desc" : "") + ", name";
 }
 
-/// The SELECT for these rows. `where`: a condition; empty: all takes.
+/// The SELECT for the options. `where`: a condition; empty: all takes.
 Result<std::string> select_text(const Shown& o, const std::string& where) {
   std::string sql = "select " + KA_TRY(chosen_columns(o.columns)) + " from takes";
   if (!where.empty()) sql += " where " + where;
@@ -104,13 +105,13 @@ Result<std::string> select_text(const Shown& o, const std::string& where) {
   return sql;
 }
 
-/// Runs the SELECT and prints it. `values`: those of its '?'. Exit code 1 if a summary could not be
-/// read, since its take is missing.
+/// Runs the SELECT and prints its table. `values`: the values for the '?' in the text. The exit
+/// code is 1 if a summary could not be read, because the table then lacks a take.
 Result<int> show(const Shown& o, const DatasetIndex& index, const std::string& sql,
                  const std::vector<Cell>& values, Call& call) {
   const Table table = KA_TRY(index.select(sql, values));
   print_tables({{"takes", table}}, o.format, call);
-  // The note stands below the table in text only. Other formats are read by programs.
+  // Only the format "text" gets a note below the table. Programs read the other formats.
   if (o.format == "text") KA_TRY(print_not_built(index, folder_of(o.folder), call));
   return index.findings().empty() ? 0 : 1;
 }
@@ -131,7 +132,7 @@ Usage describe_list(List& o) {
   return usage;
 }
 
-/// The ids of people, classes or actions; each of these structures has a member `id`.
+/// The ids of people, classes or actions. Each of these structures has a member `id`.
 std::vector<std::string> ids_of(const auto& described) {
   std::vector<std::string> ids;
   ids.reserve(described.size());
@@ -139,8 +140,8 @@ std::vector<std::string> ids_of(const auto& described) {
   return ids;
 }
 
-/// Refuses a filter for an id that neither dataset.toml nor a take has: an empty table would hide
-/// the mistake. `known`: the ids of dataset.toml; takes may have others.
+/// Refuses a filter by an id that occurs neither in dataset.toml nor in a take: an empty table
+/// would hide a typing error. `known`: the ids of dataset.toml; takes may have further ids.
 Result<void> check_id(const DatasetIndex& index, const std::string& column, const std::string& id,
                       const std::vector<std::string>& known) {
   if (id.empty() || std::find(known.begin(), known.end(), id) != known.end()) return {};
@@ -152,17 +153,17 @@ Result<void> check_id(const DatasetIndex& index, const std::string& column, cons
   return Failure(std::move(error));
 }
 
-/// Lists the takes for which all given filters hold.
+/// Lists the takes that pass all given filters.
 Result<int> run_list(List& o, Call& call) {
   const DatasetIndex index = KA_TRY(open_index(folder_of(o.shown.folder), call));
-  // A person is "03" in the index, and "sub-03" in the names of takes and folders.
+  // The index calls a person "03"; the names of takes and folders have "sub-03".
   if (o.subject.starts_with("sub-")) o.subject.erase(0, 4);
   KA_TRY(check_id(index, "subject", o.subject, ids_of(index.catalogue().subjects)));
   KA_TRY(check_id(index, "class", o.class_id, ids_of(index.catalogue().classes)));
   KA_TRY(check_id(index, "action", o.action, ids_of(index.catalogue().actions)));
   std::string where;
-  // Values of filters are bound to '?' and never pasted into the text, so no value can change the
-  // query.
+  // Each value is bound to a '?' and does not become part of the query's text. A value can
+  // therefore not change the query.
   std::vector<Cell> values;
   const auto want = [&](const std::string& column, const std::string& value) {
     if (value.empty()) return;
@@ -174,14 +175,14 @@ Result<int> run_list(List& o, Call& call) {
   want("action", o.action);
   want("verdict", o.verdict);
   for (const std::string& modality : o.modality) {
-    // A modality has a column with its number of frames.
+    // The column of a modality, such as kinect, has the number of its frames.
     where += (where.empty() ? "" : " and ") + modality + " > 0";
   }
   return show(o.shown, index, KA_TRY(select_text(o.shown, where)), values, call);
 }
 
-/// True for a whole SELECT, false for a condition.
-/// "with" begins a SELECT with common table expressions.
+/// True if the text is a whole SELECT, false if it is a condition. A SELECT may also begin with
+/// "with".
 bool is_select(std::string_view text) {
   const auto begin = text.find_first_not_of(" \t\r\n");
   if (begin == std::string_view::npos) return false;
@@ -191,7 +192,8 @@ bool is_select(std::string_view text) {
   return word == "select" || word.starts_with("with ");
 }
 
-/// Flags that shape the program's own SELECT have no meaning for a SELECT that the user wrote.
+/// Refuses flags that choose or sort columns together with a SELECT that the user wrote: the SELECT
+/// does so itself.
 Result<void> check_query(const Query& o, const Sources& given) {
   if (!is_select(o.words.front())) return {};
   for (const auto& [name, flag] : {std::pair("columns", "--columns"), std::pair("sort", "--sort"),
@@ -203,7 +205,7 @@ Result<void> check_query(const Query& o, const Sources& given) {
   return {};
 }
 
-// A query has the flags of `list` for its output, but none of its filters.
+// A query has the output flags of `list`, but none of its filters.
 Usage describe_query(Query& o) {
   Usage usage;
   usage.positionals = {folder_word(o.shown.folder),
@@ -213,7 +215,7 @@ Usage describe_query(Query& o) {
   return usage;
 }
 
-/// Runs a query. If it fails, the advice lists the columns.
+/// Runs a query. If the query fails, the advice lists the columns.
 Result<int> run_query(Query& o, Call& call) {
   const std::string& words = o.words.front();
   call.console.if_it_fails([](const Error&) -> std::vector<std::string> {
@@ -222,9 +224,10 @@ Result<int> run_query(Query& o, Call& call) {
             "interval_ms, nodes"};
   });
   const std::string sql =
-      // The brackets make one condition of the user's text, whatever it contains.
+      // The brackets turn any text of the user into one condition.
       is_select(words) ? words : KA_TRY(select_text(o.shown, "(" + words + ")"));
-  // DatasetIndex refuses every statement that writes, so a user's SELECT can't damage the index.
+  // DatasetIndex refuses every statement that writes, so a SELECT of the user can't damage the
+  // index.
   const DatasetIndex index = KA_TRY(open_index(folder_of(o.shown.folder), call));
   return show(o.shown, index, sql, {}, call);
 }

@@ -13,21 +13,21 @@ namespace kinalign {
 
 namespace {
 
-// The link leads to the running program's file, also if the program was started through PATH or the
-// file was moved.
+// Linux makes this link to the running program's file. It works even if the program was found
+// through PATH or its file was moved.
 constexpr const char* own_program = "/proc/self/exe";
 constexpr std::size_t longest_complaint = 4096;
 
-/// Reads until the other end closes; keeps only the beginning.
+/// Reads a pipe until its other end is closed. Returns only the beginning of the text.
 std::string drained(int pipe) {
   std::string out;
   std::array<char, 1024> buffer{};
   for (;;) {
     const ssize_t got = ::read(pipe, buffer.data(), buffer.size());
-    // A signal may interrupt the call. Only an end of the pipe or a fault ends the loop.
+    // A signal may interrupt read(). Only the end of the text or a fault ends the loop.
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) return out;
-    // The rest is read and dropped: a child whose pipe is full would wait for ever.
+    // The rest is read and dropped, because a child whose pipe is full would wait for ever.
     if (out.size() < longest_complaint) out.append(buffer.data(), static_cast<std::size_t>(got));
   }
 }
@@ -39,12 +39,12 @@ Result<Ended> run_own_process(const std::vector<std::string>& words) {
   all.insert(all.end(), words.begin(), words.end());
   const auto ends = KA_TRY(child_pipe());
   const auto child = start_child(own_program, std::move(all), -1, ends[1]);
-  // The parent must close its copy of the writing end. Otherwise drained() would never see the end.
+  // The parent must close its copy of the writing end: as long as it is open, the pipe has no end.
   ::close(ends[1]);
   Ended out;
   if (child) {
-    // The pipe is read to its end before waiting: in the other order a talkative child and this
-    // process could wait for each other.
+    // The pipe is read before waiting. In the other order the child could wait for room in the
+    // pipe, and this process for the child.
     out.complaint = drained(ends[0]);
     out.code = wait_for_child(*child);
   }

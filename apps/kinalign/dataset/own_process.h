@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Starts this program again with other arguments, for verbs that fork, which a thread must not do.
+// Starts kinalign as a second process. A thread uses it to run a verb that forks, since a thread
+// must not fork.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -9,16 +10,15 @@
 
 namespace kinalign {
 
-/// The end of a child. Its standard output is discarded, so only files and this structure carry
-/// results.
+/// The result of a child process. Its standard output is discarded.
 struct Ended {
-  int code = 0;           // exit code; 128 plus the signal's number if a signal ended it
-  std::string complaint;  // the beginning of stderr
+  int code = 0;           // exit code; 128 plus the number of the signal that ended the child
+  std::string complaint;  // the beginning of the child's stderr
 };
 
-/// Runs kinalign with these arguments, without a terminal, and waits for its end. Several threads
-/// may call it.
-/// Fails only if the child could not be started. A child that fails is a result with its exit code.
+/// Runs kinalign with these arguments, without a terminal, and waits until it ends. Several threads
+/// may call it. Fails only if the child can't be started. An error of the child shows in its exit
+/// code.
 Result<Ended> run_own_process(const std::vector<std::string>& words);
 
 }  // namespace kinalign
