@@ -13,8 +13,8 @@ namespace kinalign {
 
 namespace {
 
-/// The options of `kinalign dataset rm`. `names` mixes takes and people; plan_removal() tells them
-/// apart.
+/// The options of `kinalign dataset rm`. `names` may contain takes and people in any order;
+/// plan_removal() finds out which they are.
 struct Remove {
   std::vector<std::string> folder, names;
   bool raw = false, yes = false;
@@ -30,11 +30,10 @@ Usage describe_remove(Remove& o) {
   return usage;
 }
 
-constexpr std::size_t most_places = 5;  // more raw files are only counted
+constexpr std::size_t most_places = 5;  // further raw files are only counted
 
-/// The raw files that stay because --raw was not given.
-/// A path that ends in '/' is the take's own folder below sourcedata/. A file may be an input of
-/// other takes, too.
+/// The line about raw files that stay because --raw was not given. A path that ends in '/' is the
+/// take's own folder below sourcedata/. A file may also be an input of other takes.
 std::string raw_left_text(const std::vector<std::string>& places) {
   std::vector<std::string> lines;
   for (const std::string& place : places) {
@@ -44,8 +43,8 @@ std::string raw_left_text(const std::vector<std::string>& places) {
   return first_lines(lines, most_places, "  and {} more raw files or folders\n");
 }
 
-/// The raw files that stay because they were not copied or unpacked for this take.
-/// --raw does not remove files that lie elsewhere, nor the targets of links.
+/// The line about raw files that stay although --raw was given: they were neither copied nor
+/// unpacked for this take. --raw removes no files outside the data set and no targets of links.
 std::string raw_kept_text(const std::vector<std::string>& places) {
   std::vector<std::string> lines;
   for (const std::string& place : places) {
@@ -54,7 +53,7 @@ std::string raw_kept_text(const std::vector<std::string>& places) {
   return first_lines(lines, most_places, "  and {} more that are kept\n");
 }
 
-/// Removing a shared raw file would make other takes impossible to build again.
+/// The line about raw files that stay because other takes are built from them, too.
 std::string raw_shared_text(const std::vector<std::string>& places) {
   if (places.empty()) return "";
   return "  " + counted(places.size(), "raw file") + " also used by other takes " +
@@ -62,8 +61,8 @@ std::string raw_shared_text(const std::vector<std::string>& places) {
          (places.size() == 1 ? "\n" : ", ...\n");
 }
 
-/// The takes to be removed, and the raw files that stay.
-/// The text is shown before the question, so it must name everything that will be lost.
+/// The takes that will be removed, and the raw files that stay. The user reads this text before
+/// confirming, so it names everything that will be lost.
 std::string plan_text(const RemovalPlan& plan) {
   std::string out;
   for (const TakeName& name : plan.takes) out += to_string(name) + "\n";
@@ -74,12 +73,12 @@ std::string plan_text(const RemovalPlan& plan) {
          raw_shared_text(plan.raw_shared);
 }
 
-/// Asks on the terminal. Any answer but y or yes means no.
+/// Asks on the terminal. Only the answers y and yes mean yes.
 bool agreed(Call& call) {
-  // The question goes to stderr, so a redirected standard output does not hide it.
+  // The question goes to stderr, so that it appears even if stdout goes to a file.
   call.console.complain("remove these files permanently? [y/N]");
   std::string answer;
-  // Reading byte by byte takes no more than the line from the terminal.
+  // The answer is read byte by byte, so that only one line is taken from the terminal.
   for (char c = 0; ::read(STDIN_FILENO, &c, 1) == 1 && c != '\n';) answer += c;
   return answer == "y" || answer == "yes";
 }
@@ -97,17 +96,17 @@ nlohmann::ordered_json plan_json(const RemovalPlan& plan) {
           {"unknown", plan.unknown}};
 }
 
-/// Removes takes after asking. Without a terminal --yes is needed.
+/// Removes takes after asking. Without a terminal --yes must be given.
 Result<int> run_remove(Remove& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string folder = folder_of(o.folder);
   KA_TRY(load_catalogue(files, folder));
   const RemovalPlan plan = KA_TRY(plan_removal(files, folder, o.names, o.raw));
   auto json = plan_json(plan);
-  // "removed" becomes true only after the last file is gone.
+  // The member becomes true after the last file has been removed.
   json["removed"] = false;
   if (!o.yes && !call.common.dry_run) {
-    // Both ends are needed: standard input for the answer and stderr for the question.
+    // The answer needs a terminal on stdin, and the question needs one on stderr.
     const bool can_ask = ::isatty(STDIN_FILENO) == 1 && call.surroundings.err_is_terminal;
     if (!can_ask) {
       return call.console.refuse(
@@ -115,26 +114,26 @@ Result<int> run_remove(Remove& o, Call& call) {
     }
   }
   call.console.print(harmless(plan_text(plan)));
-  // The plan is flushed before the question, so that the user has read it.
+  // The plan is flushed before the question, so that the user can read it first.
   const bool stays = call.common.dry_run || (!o.yes && (call.console.flush(), !agreed(call)));
   if (stays) {
     call.console.print("nothing was removed\n");
     call.console.print_json(json_text(json));
     return 0;
   }
-  // From here on a failure leaves a part of the work done, so the advice changes.
+  // After a failure below, some files are already removed, so the advice changes here.
   call.console.advise("some files may be removed; run the same command again to continue");
   KA_TRY(remove_takes(files, folder, plan));
-  // Opening the index removes the rows of takes that are gone.
+  // Opening the index deletes the rows of takes that no longer exist.
   KA_TRY(open_index(folder, call));
-  // Splits are not edited. They are listed, since they name takes that do not exist any more.
+  // Splits that name removed takes are listed and not edited.
   const auto splits = splits_naming(files, folder, {plan.takes.begin(), plan.takes.end()});
   json["removed"] = true;
   json["splits"] = splits_json(splits);
   call.console.print(harmless("removed\n" + splits_text(splits)));
   call.console.print_json(json_text(json));
-  // Unknown names are an error only together with the takes that were removed: plan_removal() fails
-  // if no name is known.
+  // If some names are unknown, the exit code is 1, although the known takes were removed. If no
+  // name is known, plan_removal() has failed above.
   return plan.unknown.empty() ? 0 : 1;
 }
 

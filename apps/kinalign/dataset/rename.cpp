@@ -26,7 +26,7 @@ Usage describe_rename(Rename& o) {
   return usage;
 }
 
-// Both names of every take, for programs that keep lists of takes.
+// The old and the new name of every take, for programs that keep lists of takes.
 nlohmann::ordered_json takes_json(const RenamePlan& plan) {
   auto json = nlohmann::ordered_json::array();
   for (const auto& [from, to] : plan.takes) {
@@ -35,7 +35,8 @@ nlohmann::ordered_json takes_json(const RenamePlan& plan) {
   return json;
 }
 
-/// The plan of --dry-run. plan_rename() has checked it in full, so the real call would do the same.
+/// Prints the plan of --dry-run. plan_rename() has made all checks, so a real call would do the
+/// same.
 Result<int> show_plan(const RenamePlan& plan, Call& call) {
   for (const auto& [from, to] : plan.takes) {
     call.console.print(to_string(from) + " -> " + to_string(to) + "\n");
@@ -45,15 +46,15 @@ Result<int> show_plan(const RenamePlan& plan, Call& call) {
   return 0;
 }
 
-/// Renames a take, a person or an action. A stopped rename is finished by the same command.
+/// Renames a take, a person or an action. If it was stopped, the same command finishes the work.
 Result<int> run_rename(Rename& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string folder = folder_of(o.folder), from = o.from.front(), to = o.to.front();
   const Catalogue catalogue = KA_TRY(load_catalogue(files, folder));
-  // All conflicts are found while planning. After that only the disk can make the rename fail.
+  // plan_rename() finds all conflicts. After it only a fault of the disk can stop the rename.
   const RenamePlan plan = KA_TRY(plan_rename(files, folder, catalogue, from, to));
   if (call.common.dry_run) return show_plan(plan, call);
-  // The exact command is printed, because only the same rename continues one that was stopped.
+  // The advice repeats the exact command, because only the same rename continues a stopped one.
   call.console.advise(
       "some files may be renamed; run the same command again to continue: kinalign dataset "
       "rename " +
@@ -61,12 +62,12 @@ Result<int> run_rename(Rename& o, Call& call) {
   const Renamed done = KA_TRY(rename_takes(files, folder, plan));
   KA_TRY(open_index(folder, call));
   std::set<TakeName> old;
-  // Splits are searched for the old names: a split made later has the new ones.
+  // Old splits contain the old names, so these are searched.
   for (const auto& take : plan.takes) old.insert(take.first);
   const auto splits = splits_naming(files, folder, old);
   std::string text =
       fmt::format("{}: {} is now {}, {}\n", folder, from, to, counted(plan.takes.size(), "take"));
-  // Moving a take's file is not enough: its bytes contain the names, so it must be built again.
+  // The bytes of a take contain the names, so each renamed take must be built again.
   if (done.to_build > 0) {
     text +=
         fmt::format("  {} to be made again, because a take's file contains subject and action\n",

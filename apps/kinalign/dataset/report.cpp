@@ -21,8 +21,8 @@ namespace kinalign {
 
 namespace {
 
-/// The options of `kinalign dataset report`. --card excludes --pages, since a card has no links to
-/// pages.
+/// The options of `kinalign dataset report`. --card and --pages exclude each other, since a card
+/// has no links to pages.
 struct Report {
   std::vector<std::string> folder;
   bool pages = false, card = false;
@@ -43,16 +43,15 @@ Usage describe_report(Report& o) {
     if (o.card && !out.empty() && !out.ends_with(".md")) {
       return Failure(Error{"-o", 0, "the card's file name, as in -o README.md", shown(out)});
     }
-    // -o may be missing: page and card have their usual places in the data set.
+    // -o may be missing, because the page and the card have default places in the data set.
     if (o.card || out.empty() || out.ends_with(".html") || out.ends_with(".htm")) return {};
     return Failure(Error{"-o", 0, "the page's file name, as in -o report.html", shown(out)});
   };
   return usage;
 }
 
-/// Writes a file. A file that this verb wrote before is replaced; any other only with --force.
-/// `mark` is a text that only files of this verb contain. A README.md written by hand is therefore
-/// never lost.
+/// Writes a file. An existing file is replaced only if it contains `mark`, a text that only this
+/// verb writes, or if --force was given. A README.md written by hand is therefore never lost.
 Result<void> write_over_own(const std::string& path, std::string_view mark, const std::string& text,
                             Call& call) {
   FileSystem& files = call.surroundings.files;
@@ -64,37 +63,36 @@ Result<void> write_over_own(const std::string& path, std::string_view mark, cons
 
 // ---- the pages of takes
 
-/// Makes a take's page with `kinalign report`. If the raw files are not those of the take any more,
-/// the page has no raw samples.
-/// Called from several threads. The page is made in a process of its own, since `report` forks and
-/// a thread must not.
+/// Makes a take's page with `kinalign report`. If the raw files have changed since the take was
+/// built, the page has no raw samples. Several threads call this function. `report` forks, which a
+/// thread must not do, so it runs as a separate process.
 Result<void> make_page(const PageJob& job) {
   std::vector<std::string> words{"report", job.take,         "-o",      job.page, "--force",
                                  "--jobs", std::string("1"), "--color", "never"};
   Ended ended;
-  // The first try shows raw samples. If inputs are missing or were changed, the second try does
-  // without them.
+  // The first try includes the raw samples. If raw files are missing or have changed, the second
+  // try leaves them out.
   if (!job.inputs.empty()) {
     std::vector<std::string> with_inputs = words;
     with_inputs.insert(with_inputs.end(), {"--inputs", job.inputs});
     ended = KA_TRY(run_own_process(with_inputs));
   }
-  constexpr int most_findings = 1;  // exit code 1: a stream is bad, and the page was written
+  constexpr int most_findings = 1;  // 1: the page was written, and a stream is bad
   if (job.inputs.empty() || ended.code > most_findings) ended = KA_TRY(run_own_process(words));
   if (ended.code <= most_findings) return {};
   if (interrupted()) return Failure(interruption());
-  // The first line of stderr is the error; advice and further lines follow it.
+  // The first line on stderr is the error. The lines after it are advice.
   const std::string first = ended.complaint.substr(0, ended.complaint.find('\n'));
   return Failure(Error{job.take, 0, "a take that kinalign report can make a page of",
                        first.empty() ? fmt::format("exit code {}", ended.code) : first});
 }
 
-/// The folder of the takes' pages: walks/report/ next to walks/report.html.
-/// `out` has an extension, as the check of -o and the default make sure.
+/// The folder of the takes' pages, named after the page without its ending: walks/report.html gives
+/// walks/report/.
 std::string place_of_pages(const std::string& out) { return out.substr(0, out.rfind('.')) + "/"; }
 
-/// A folder's name, percent-encoded for a relative link.
-/// Only the characters that RFC 3986 calls unreserved stay as they are.
+/// A folder's name for a relative link, percent-encoded. Only the characters that RFC 3986 calls
+/// unreserved stay as they are.
 std::string as_link(std::string_view name) {
   std::string out;
   for (const char c : name) {
@@ -106,29 +104,30 @@ std::string as_link(std::string_view name) {
   return out;
 }
 
-/// Links each take of the page to its own page, if that page is of the take's present bytes.
+/// Links each take in the table to its own page, if that page shows the take as it is now.
 Result<void> link_pages(const TakePages& pages, const DatasetIndex& index, const std::string& place,
                         DatasetPage& page) {
-  // The hash decides: a page of an older version of the take would show other data.
+  // A page is current if it states the hash of the take's bytes. A page of an older take would show
+  // other data.
   std::map<std::string, std::string> hashes;
   for (const auto& row : KA_TRY(index.select("select name, sha256 from takes")).rows) {
     hashes[std::get<std::string>(row.at(0))] = std::get<std::string>(row.at(1));
   }
-  // The link is relative, so the page and its folder can be moved together.
+  // The link is relative, so that the page and the folder can be moved together.
   const std::string folder =
       as_link(file_name(std::string_view(place).substr(0, place.size() - 1)));
   for (DatasetTake& take : page.worst) {
     const std::string file = pages.page_of(take.name, hashes[take.name]);
     if (file.empty()) continue;
     take.page.assign(folder).append("/").append(file);
-    // A take with a link does not count as one without a page.
+    // A take with a link is no longer counted as a take without a page.
     --page.takes_without_page;
   }
   return {};
 }
 
-/// Makes pages for the takes in the table of the data set's page only; further takes have no row to
-/// link from.
+/// Makes the pages of those takes that are in the table of the data set's page. Other takes have no
+/// row from which a link could lead to their page.
 Result<PagesMade> make_pages(TakePages& pages, const DatasetIndex& index, const DatasetPage& page,
                              Call& call) {
   std::vector<std::string> names;
@@ -138,8 +137,8 @@ Result<PagesMade> make_pages(TakePages& pages, const DatasetIndex& index, const 
 
 // ---- text and JSON
 
-/// Prints what was written: takes by verdict, and the pages made.
-/// Each count is in the text and in the JSON. Failed pages do not stop the verb but are listed.
+/// Prints what was written: the number of takes by verdict and the number of pages. Pages that
+/// failed are listed; they do not stop the verb.
 void print_written(const std::string& out, std::size_t bytes, const DatasetPage& page,
                    const std::optional<PagesMade>& pages, Call& call) {
   std::string text = fmt::format("{}: {}, {}: {} bad, {} usable, {} good\n", out, size_text(bytes),
@@ -173,9 +172,8 @@ void print_written(const std::string& out, std::size_t bytes, const DatasetPage&
 
 // ---- the verb
 
-/// Writes the page of the data set, and with --pages those of its takes.
-/// The order matters: pages of takes are made before links to them can be set, and the data set's
-/// page is written last.
+/// Writes the page of the data set; with --pages also the pages of its takes. The takes' pages are
+/// made first, because the data set's page links to them.
 Result<int> write_page(const std::string& folder, const DatasetIndex& index, bool with_pages,
                        Call& call) {
   FileSystem& files = call.surroundings.files;
@@ -187,12 +185,12 @@ Result<int> write_page(const std::string& folder, const DatasetIndex& index, boo
   TakePages pages(files, folder, place, page.software);
   std::optional<PagesMade> made;
   if (with_pages) made = KA_TRY(make_pages(pages, index, page, call));
-  // Links are set without --pages, too: pages from an earlier run may still be right.
+  // Links are also set without --pages, because pages of an earlier run may still be current.
   KA_TRY(link_pages(pages, index, place, page));
   const std::string html = dataset_html(page);
   KA_TRY(write_over_own(out, dataset_page_mark, html, call));
   print_written(out, html.size(), page, made, call);
-  // A summary that can't be read or a page that failed gives exit code 1.
+  // The exit code is 1 if a summary could not be read or a page could not be made.
   return index.findings().empty() && (!made || made->failed.empty()) ? 0 : 1;
 }
 

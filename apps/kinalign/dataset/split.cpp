@@ -17,15 +17,15 @@ namespace kinalign {
 
 namespace {
 
-/// The options of `kinalign dataset split`. `check` names an existing split, which is then only
-/// judged.
+/// The options of `kinalign dataset split`. If `check` names an existing split, that split is
+/// checked and no new one is made.
 struct SplitVerb {
   std::vector<std::string> folder;
   SplitOptions options;
   std::string test_people, check;
 };
 
-/// The command line of `kinalign dataset split`, with the checks that need several flags.
+/// The command line of `kinalign dataset split`, with checks that concern several flags.
 Usage describe_split(SplitVerb& o) {
   Usage usage;
   usage.positionals = {folder_word(o.folder)};
@@ -40,13 +40,12 @@ Usage describe_split(SplitVerb& o) {
       {"seed", "seed of the random numbers", &o.options.seed, 0.0, 9e15},
       text_flag("check", "check an existing split instead", &o.check, "FILE")};
   usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
-    // Naming the people leaves nothing to choose by a rule, a share or a seed.
+    // If the user names the people of the test part, flags that choose people have no meaning.
     for (const char* name : {"by", "test", "validation", "stratified", "seed"}) {
       if (o.test_people.empty() || given.count(name) == 0) continue;
       return Failure(Error{"--test-people", 0, std::string("no --") + name + " with it", "both"});
     }
-    // At least one take must be left for training. make_split() checks this again with the real
-    // takes.
+    // Some takes must be left for training. make_split() checks this again with the real takes.
     if (o.options.test + o.options.validation >= 1.0) {
       return Failure(Error{"--test", 0, "fractions that leave takes for training",
                            "fractions of 1 or more together"});
@@ -55,7 +54,7 @@ Usage describe_split(SplitVerb& o) {
       return Failure(Error{"--stratified", 0, "--by take, the only way that can divide each class",
                            "--by " + o.options.by});
     }
-    // Exactly one of -o and --check is needed. The comparison is true if one of both is given.
+    // Exactly one of -o and --check must be given.
     if (!o.check.empty() == common.out.empty()) return {};
     return Failure(Error{"-o", 0, "-o FILE for a new split, or --check FILE",
                          o.check.empty() ? "neither" : "both"});
@@ -63,8 +62,8 @@ Usage describe_split(SplitVerb& o) {
   return usage;
 }
 
-/// The takes, people and frames of each part.
-/// Frames are counted from the summaries. A take that the data set lacks counts with 0 frames.
+/// The number of takes, people and frames in each part. The summaries give the frames. A take that
+/// is missing in the data set counts with 0 frames.
 Table table_of(const Split& split, const std::vector<SplitTake>& takes) {
   std::map<TakeName, std::uint64_t> frames;
   for (const SplitTake& take : takes) frames[take.name] = take.summary.frames;
@@ -85,18 +84,19 @@ Table table_of(const Split& split, const std::vector<SplitTake>& takes) {
   return table;
 }
 
-/// Writes the file of -o; makes its folder if needed.
+/// Writes the file of -o, and makes its folder if needed.
 Result<void> write_split(const std::string& json, Call& call) {
   const std::string& file = call.common.out;
-  // Folders on the way to the file are made, as in -o splits/people.json for a new data set.
-  std::error_code ignored;  // creating the file reports the fault
+  // The file's folder is made, too, as for -o splits/people.json in a new data set.
+  std::error_code ignored;  // a fault shows when the file is created
   std::filesystem::create_directories(std::filesystem::path(file).parent_path(), ignored);
   KA_TRY(write_whole(call.surroundings.files, file, json, call.common.overwrite()));
   call.console.wrote(file);
   return {};
 }
 
-/// Makes or checks a split. A split with leaks is not written.
+/// Makes or checks a split. A split with an error, such as the same data in two parts, is not
+/// written.
 Result<int> run_split(SplitVerb& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string folder = folder_of(o.folder);
@@ -105,18 +105,19 @@ Result<int> run_split(SplitVerb& o, Call& call) {
   const std::string file = o.check.empty() ? call.common.out : o.check;
   Split split;
   if (o.check.empty()) {
-    // Empty ids between commas are passed on. make_split() refuses them as people without takes.
+    // Empty ids between commas stay in the list. make_split() refuses them as people without takes.
     if (!o.test_people.empty()) o.options.test_people = split_at_commas(o.test_people);
     split = KA_TRY(make_split(takes, index.catalogue(), o.options));
   } else {
     split = KA_TRY(read_split(files, o.check));
   }
-  // A new split is checked like an old one: two takes of different names may be made from the same
+  // A new split is checked like an old one: two takes with different names may come from the same
   // raw bytes.
   const Findings findings = check_split(split, takes, file);
   const bool leaks = print_findings(findings, call);
   if (leaks && o.check.empty()) call.console.print("nothing was written\n");
-  // A leak makes results look better than they are. A split with one is never written.
+  // With the same data in two parts, results look better than they are. Such a split is never
+  // written.
   if (!leaks && o.check.empty()) {
     KA_TRY(write_split(split_json(split, takes), call));
   }

@@ -24,7 +24,7 @@ Result<void> write_table(const Table& table, const std::string& path,
 }
 
 void print_tables(const std::vector<NamedTable>& tables, const std::string& format, Call& call) {
-  // With --json each table is a member of one object, under its own name.
+  // With --json the tables become one object; each table is a member under its name.
   if (call.console.prints_json()) {
     std::string object;
     for (const NamedTable& one : tables) {
@@ -37,11 +37,11 @@ void print_tables(const std::vector<NamedTable>& tables, const std::string& form
   std::string text;
   for (const NamedTable& one : tables) {
     text += (text.empty() ? "" : "\n") +
-            // An unknown format can't reach this place, since the parser knows the choices. Text is
-            // the fallback.
+            // The parser refuses unknown formats, so "text" is never used in their place.
             written(one.table, table_format(format).value_or(TableFormat::text));
   }
-  // Names in tables come from files and are made harmless. put() prints them also with --quiet.
+  // harmless() removes control characters, since names in tables come from files. put() prints even
+  // with --quiet.
   call.console.put(harmless(text));
 }
 

@@ -18,8 +18,8 @@ struct Tables {
   std::string table = "all", format = "text";
 };
 
-// The order is that of the printed tables. The names are choices of --table and members of the
-// JSON.
+// The tables in the order in which they are printed. Their names are the choices of --table and the
+// members of the JSON.
 using Make = Result<Table> (*)(const DatasetIndex&);
 constexpr std::array<std::pair<const char*, Make>, 4> tables{{{"subjects", table_by_subject},
                                                               {"classes", table_by_class},
@@ -36,7 +36,7 @@ Usage describe_tables(Tables& o) {
   return usage;
 }
 
-/// Prints one or all of the paper's tables.
+/// Prints one of the tables, or all of them.
 Result<int> run_tables(Tables& o, Call& call) {
   const DatasetIndex index = KA_TRY(open_index(folder_of(o.folder), call));
   std::vector<NamedTable> chosen;

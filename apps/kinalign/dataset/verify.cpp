@@ -28,45 +28,46 @@ Usage describe_verify(Verify& o) {
   return usage;
 }
 
-/// Checks splits against the takes whose summaries can be read; the others have a finding already.
-/// Gives one finding for each split: a note if all its takes exist and only their bytes changed.
+/// Checks the splits of a data set against its takes. Takes whose summary can't be read have a
+/// finding already and are left out. Each split with a problem gets one finding. The finding is a
+/// note if all takes of the split exist and only their bytes have changed.
 void check_splits(FileSystem& files, const std::string& folder, Findings& findings) {
   const auto splits = splits_in(files, folder);
   const auto there = scan_takes(folder);
-  // Without splits there is nothing to check. A folder that can't be read has a finding of verify()
-  // already.
+  // Without splits there is nothing to check. If the folder can't be read, verify() has reported
+  // it.
   if (splits.empty() || !there) return;
   std::vector<SplitTake> takes;
   for (const auto& [name, kinds] : *there) {
-    // A take without a readable summary can't be checked. It is skipped here, and verify() has
-    // reported it.
+    // A take without a readable summary is skipped here; verify() has reported it.
     const auto summary = read_summary(files, folder, name);
     if (summary) takes.push_back({name, *summary});
   }
   for (const auto& [path, split] : splits) {
     Findings found = check_split(split, takes, path);
-    // Notes of a split are about people in two parts, which many splits allow.
+    // A note says that a person is in two parts. Many splits allow that, so notes are dropped.
     std::erase_if(found, [](const Finding& one) { return one.severity == Severity::note; });
     if (found.empty()) continue;
-    // check_split() sorts its findings, so the first one is the most severe.
+    // check_split() sorts findings by severity, so the first one is the worst.
     Finding& worst = found.front();
-    // The only warning is about changed bytes. After a rebuild with a new version this is normal,
-    // so it becomes a note.
+    // check_split() warns only about changed bytes. They are normal after a rebuild with a new
+    // version, so the warning becomes a note.
     if (worst.severity == Severity::warning) worst.severity = Severity::note;
     if (found.size() > 1) worst.what.found += fmt::format(", and {} more", found.size() - 1);
     worst.repair = "make it again with kinalign dataset split and --force";
     findings.push_back(std::move(worst));
   }
-  // The splits' findings were appended at the end; the list must be sorted by severity again.
+  // The findings of the splits stand at the end of the list, so the list is sorted by severity
+  // again.
   sort_findings(findings);
 }
 
-/// Verifies a data set and prints the findings. Notes alone give exit code 0.
+/// Verifies a data set and prints the findings. If there are only notes, the exit code is 0.
 Result<int> run_verify(Verify& o, Call& call) {
   const std::string folder = folder_of(o.folder);
   FileSystem& files = call.surroundings.files;
   const Catalogue catalogue = KA_TRY(load_catalogue(files, folder));
-  // The jobs are threads: takes are hashed or read in parallel.
+  // --jobs gives the number of threads that read and hash takes.
   Verified found =
       KA_TRY(verify(files, folder, catalogue, {call.jobs, o.deep}, call.console.progress()));
   check_splits(files, folder, found.findings);

@@ -15,12 +15,11 @@ namespace kinalign {
 
 namespace {
 
-/// The index of a part has one byte.
+/// Each window stores the index of its part in one byte.
 constexpr std::size_t most_parts = 255;
 constexpr std::size_t shown_takes = 5;
 
-/// The options of `kinalign dataset windows`. Without --split all windows belong to one part,
-/// "all".
+/// The options of `kinalign dataset windows`. Without --split all windows are in one part, "all".
 struct Windows {
   std::vector<std::string> folder;
   WindowOptions options;
@@ -48,7 +47,7 @@ Usage describe_windows(Windows& o) {
   return usage;
 }
 
-/// Puts each take into its part of the split, and removes takes that are in no part.
+/// Notes the part of the split to which each take belongs. Takes that are in no part are removed.
 Result<void> divide(const Split& split, const std::string& file, std::vector<SplitTake>& takes,
                     WindowSource& source) {
   if (split.parts.size() > most_parts) {
@@ -59,12 +58,12 @@ Result<void> divide(const Split& split, const std::string& file, std::vector<Spl
   source.parts.clear();
   for (const SplitPart& part : split.parts) {
     for (const TakeName& name : part.takes) {
-      // The index of a part is stored for each window; most_parts keeps it in a byte.
+      // most_parts makes sure that the index fits into one byte.
       part_of[name] = static_cast<std::uint8_t>(source.parts.size());
     }
     source.parts.push_back(part.name);
   }
-  // Takes outside of the split were meant for no part, so they give no windows.
+  // Takes that the split does not name give no windows.
   std::erase_if(takes, [&](const SplitTake& take) { return !part_of.contains(take.name); });
   for (const SplitTake& take : takes) {
     source.takes.push_back({take.name, "", take.summary, part_of.at(take.name)});
@@ -72,7 +71,7 @@ Result<void> divide(const Split& split, const std::string& file, std::vector<Spl
   return {};
 }
 
-/// The takes that windows are cut from, each with its part and its class of actions.
+/// The takes from which windows are cut, each with its part of the split and its class of actions.
 Result<WindowSource> source_of(const Windows& o, const std::string& folder, Call& call) {
   FileSystem& files = call.surroundings.files;
   const DatasetIndex index = KA_TRY(open_index(folder, call));
@@ -83,8 +82,8 @@ Result<WindowSource> source_of(const Windows& o, const std::string& folder, Call
   if (o.split.empty()) {
     for (const SplitTake& take : takes) source.takes.push_back({take.name, "", take.summary, 0});
   } else {
-    // The split is checked against all takes, not only those of --where. A leak is an error: a
-    // network would be tested on known data.
+    // The split is checked against all takes, even those that --where leaves out. It is an error if
+    // the test part has data of the training part.
     const auto all = o.where.empty() ? takes : KA_TRY(built_takes(files, folder, index, ""));
     KA_TRY(divide(KA_TRY(read_good_split(files, o.split, all)), o.split, takes, source));
   }
@@ -96,9 +95,8 @@ Result<WindowSource> source_of(const Windows& o, const std::string& folder, Call
   return source;
 }
 
-/// Prints the number of windows of each part, and everything that was left out.
-/// Windows may be lost for three reasons: too few valid cells, stretches that are too short, and
-/// whole takes without the streams.
+/// Prints the number of windows in each part and what was left out, for three reasons: too few
+/// valid samples, stretches shorter than a window, and takes without the needed streams.
 void print(const WindowsMade& made, const WindowSource& source, Call& call) {
   Table table;
   table.columns = {{"part", "part"}, {"windows", "windows"}};
@@ -132,12 +130,12 @@ void print(const WindowsMade& made, const WindowSource& source, Call& call) {
                 1));
 }
 
-/// Cuts the windows into one NPZ.
+/// Cuts the windows and writes them into one NPZ file.
 Result<int> run_windows(Windows& o, Call& call) {
   const std::string folder = folder_of(o.folder);
   const WindowSource source = KA_TRY(source_of(o, folder, call));
   const WindowsMade made =
-      // One file holds the windows of all takes.
+      // The windows of all takes go into one file.
       KA_TRY(write_windows(call.surroundings.files, source, o.options,
                            {call.common.out, call.common.overwrite()}, call.console.progress()));
   call.console.wrote(call.common.out);

@@ -11,8 +11,8 @@ void print_live(Console& console, std::string_view what) {
   console.note(live_line(SystemClocks{}.utc(), what));
 }
 
-/// Events are printed at each call, so that they appear soon. Status lines and the key file are due
-/// once a second.
+/// Prints events at each call, so that they appear soon. Once a second it also prints the status
+/// lines and reads the key file, which may have been replaced.
 std::string NodePrinter::operator()() {
   print_events();
   if (Clock::now() >= next_status_) {
@@ -24,7 +24,7 @@ std::string NodePrinter::operator()() {
   return nodes_text(receiver_.status());
 }
 
-/// Reports events of this machine, of nodes and of their clocks.
+/// Prints the events of this machine's clock, of nodes and of their clocks.
 void NodePrinter::print_events() {
   for (const HostClockEvent& event : receiver_.take_host_events()) {
     print_live(console_, event_text(event));
@@ -34,34 +34,34 @@ void NodePrinter::print_events() {
     print_live(console_, event_text(event));
     console_.print_json(event_json(event));
   }
-  // One instant for all events: repeated trouble of a clock is judged by the time since the last
-  // one.
+  // All events get the same time `now`. It tells how long ago a clock last caused trouble.
   const HostTime now = SystemClocks{}.raw();
   for (const auto& [stream, node_id, event] : receiver_.take_clock_events()) {
     const std::string line = clock_lines_.line(stream, node_id, event, now);
-    // Some events change nothing for a user and give no line; programs get every event.
+    // Events that change nothing for a user give no line; --json prints every event.
     if (!line.empty()) print_live(console_, line);
     console_.print_json(event_json(event, stream, node_id));
   }
 }
 
-/// JSON only. Clock pairs and states allow a program to follow every node's clock.
+/// Prints the status for --json only. From the clock pairs and states a program can follow every
+/// node's clock.
 void NodePrinter::print_status() {
   for (const ClockPair& pair : receiver_.take_pairs()) console_.print_json(pair_json(pair));
   for (const NodeStatus& status : receiver_.status()) console_.print_json(status_json(status));
-  // The counts change slowly, so they are written every tenth second.
+  // The counts change slowly, so they are printed every ten seconds.
   if (--counts_in_s_ > 0) return;
   counts_in_s_ = 10;
   console_.print_json(node_counts_json(receiver_));
 }
 
-/// Reads the key file once a second. A file that can't be read, is half written or is missing
-/// leaves the keys as they are.
+/// Reads the key file. The keys stay as they are if the file is missing, incomplete or can't be
+/// read.
 void NodePrinter::look_at_key() {
   if (lab_.path.empty()) return;
   const auto key = read_lab_key(files_, lab_.path);
   print_key_trouble(key ? "" : to_string(key.error()));
-  // The file is read every second, but only another content is a new key.
+  // The key is replaced only if the file has another key than before.
   if (!key || *key == lab_.key) return;
   lab_.key = *key;
   receiver_.replace_key(*key);
@@ -69,9 +69,9 @@ void NodePrinter::look_at_key() {
   console_.print_json(R"({"event": "key_replaced"})");
 }
 
-/// Reports a fault of the key file once, as long as it lasts.
+/// Prints a fault of the key file once for as long as it lasts.
 void NodePrinter::print_key_trouble(const std::string& trouble) {
-  // The same text means that the fault lasts. An empty text means that it is over.
+  // If the text is the same, the fault still lasts. If the text is empty, the fault is over.
   if (trouble == key_trouble_) return;
   key_trouble_ = trouble;
   if (trouble.empty()) return;
@@ -79,7 +79,7 @@ void NodePrinter::print_key_trouble(const std::string& trouble) {
   console_.print_json(R"({"event": "key_unreadable"})");
 }
 
-/// `now` has both clocks: the status gives ages by the raw clock and dates by UTC.
+/// The line about one node. It states ages by the raw clock and dates by UTC, so `now` has both.
 std::string NodePrinter::summary_of(const NodeStatus& status) const {
   SystemClocks clocks;
   const ClockPair now{.raw = clocks.raw(), .utc = clocks.utc()};
@@ -87,7 +87,7 @@ std::string NodePrinter::summary_of(const NodeStatus& status) const {
   return status_text(status, now, bad ? contradiction_text : "");
 }
 
-/// Reports the last events, each node's status, and refused nodes.
+/// Prints the last events, the state of each node, and the nodes that were refused.
 void NodePrinter::print_end() {
   print_events();
   for (const NodeStatus& status : receiver_.status()) {

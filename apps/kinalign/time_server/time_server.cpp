@@ -21,7 +21,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The options of `kinalign time-server`. An absent local_stratum or node_port turns that service
+/// The options of `kinalign time-server`. If local_stratum or node_port is empty, that service is
 /// off.
 struct TimeServerFlags {
   std::int64_t port = 123;
@@ -30,8 +30,8 @@ struct TimeServerFlags {
   std::string lab_key;
 };
 
-/// Networks or single addresses, as --exempt gives them. parse_network() knows no flag, so the
-/// error gets its name here.
+/// Parses the networks or single addresses of --exempt. parse_network() does not know the flag, so
+/// its name is added to the error here.
 Result<std::vector<AddressBlock>> networks_of(const std::vector<std::string>& texts) {
   std::vector<AddressBlock> networks;
   for (const std::string& text : texts) {
@@ -42,26 +42,27 @@ Result<std::vector<AddressBlock>> networks_of(const std::vector<std::string>& te
   return networks;
 }
 
-/// Refuses two addresses of which one covers the other. The system would report that another
-/// program has the port.
+/// Refuses two addresses if one of them includes the other. Otherwise the system would report that
+/// another program uses the port.
 Result<void> check_pair(const std::string& one, const std::string& other) {
   if (one == other) {
     return Failure(Error{"--listen", 0, "each address once", one + " twice"});
   }
-  // An IPv4 address and an IPv6 address never cover each other.
+  // An IPv4 address and an IPv6 address never include each other.
   if (is_ipv6_text(one) != is_ipv6_text(other)) return {};
   for (const auto& [all, part] : {std::pair{one, other}, std::pair{other, one}}) {
-    // "0.0.0.0" and "::" include every address of their family.
+    // "0.0.0.0" includes every IPv4 address, "::" every IPv6 address.
     if (!is_any_address(all)) continue;
     return Failure(Error{"--listen", 0, "no address that " + all + " already includes", part});
   }
   return {};
 }
 
-/// The addresses in the system's spelling.
+/// The addresses of --listen in the spelling of the operating system.
 Result<std::vector<std::string>> addresses_of(const std::vector<std::string>& texts) {
   std::vector<std::string> addresses;
-  // One address has several spellings, above all in IPv6. Only equal spellings can be compared.
+  // An address, above all of IPv6, may be spelt in several ways. With one spelling addresses can be
+  // compared as text.
   for (const std::string& text : texts) {
     const auto address = spelt_address(text);
     if (!address) return Failure(Error{"--listen", 0, "an IPv4 or IPv6 address", shown(text)});
@@ -73,16 +74,17 @@ Result<std::vector<std::string>> addresses_of(const std::vector<std::string>& te
 
 /// Checks flags that exclude or need each other.
 Result<void> check_flags(const TimeServerFlags& o, const Sources& given) {
-  // Both calls are for their errors: a wrong address is wrong use, before any socket is opened.
+  // A wrong address is wrong use. Both calls report it before any socket is opened.
   KA_TRY(addresses_of(o.listen));
   KA_TRY(networks_of(o.exempt));
-  if (given.contains("lab_key") && o.lab_key.empty()) {  // an unset shell variable is not "no key"
+  // an empty text comes from a shell variable that is not set
+  if (given.contains("lab_key") && o.lab_key.empty()) {
     return Failure(Error{"--lab-key", 0, "a file's name", "nothing"});
   }
   if (!o.node_port && !o.lab_key.empty()) {
     return Failure(Error{"--lab-key", 0, "--node-port as well", "no --node-port"});
   }
-  // Port 0 asks the system for a free port, so two zeros are different ports.
+  // For port 0 the system chooses a free port, so two zeros give two different ports.
   if (o.node_port == o.port && o.port != 0) {
     return Failure(Error{"--node-port", 0, "a port other than that of --port",
                          fmt::format("port {} for both", o.port)});
@@ -115,12 +117,12 @@ Result<TimeServerOptions> options_of(const TimeServerFlags& flags) {
   options.port = static_cast<std::uint16_t>(flags.port);
   if (flags.local_stratum) options.local_stratum = static_cast<std::uint8_t>(*flags.local_stratum);
   options.exempt = KA_TRY(networks_of(flags.exempt));
-  // The secret is new for each start. It is never stored.
+  // The secret of the NTP server is new at each start and is never stored.
   options.key = KA_TRY(new_secret());
   return options;
 }
 
-/// Advice for a port that could not be opened. `flag`: the flag that names it.
+/// Advice for a port that could not be opened. `flag`: the flag that sets the port.
 Advice advice_on_port(const std::string& flag, std::int64_t port) {
   const WantedPort wanted{static_cast<std::uint16_t>(port), flag, "--listen", false};
   return [wanted](const Error& error) { return port_advice(error, wanted); };
@@ -130,15 +132,14 @@ Result<LabKeyFile> read_key_file(const TimeServerFlags& flags, Call& call) {
   LabKeyFile lab{flags.lab_key, std::nullopt};
   if (lab.path.empty()) return lab;
   FileSystem& files = call.surroundings.files;
-  // The advice is for the key file only; the caller sets the next one for the port.
+  // This advice is for the key file. The caller sets other advice before it opens a port.
   call.console.if_it_fails(key_advice);
   lab.key = KA_TRY(read_lab_key(files, lab.path));
   return lab;
 }
 
-/// The receiver of nodes; absent without --node-port.
-/// The receiver has the addresses of --listen and its own port. Its secret and the lab's key are
-/// separate: the secret lives only as long as the process.
+/// Opens the receiver of nodes; empty without --node-port. The receiver uses the addresses of
+/// --listen and its own port. Its secret is new at each start; the lab's key comes from a file.
 Result<std::optional<NodeReceiver>> open_nodes(const TimeServerFlags& flags,
                                                const std::optional<LabKey>& lab_key,
                                                ClockReader& clocks) {
@@ -151,11 +152,11 @@ Result<std::optional<NodeReceiver>> open_nodes(const TimeServerFlags& flags,
   return KA_TRY(NodeReceiver::open(options, clocks));
 }
 
-/// The addresses and ports that clients need.
+/// The addresses and ports that users of clients need.
 ServedPort served_port(const TimeServer& server, const std::optional<NodeReceiver>& nodes,
                        const TimeServerFlags& flags) {
   ServedPort served;
-  // With port 0 only the open sockets know the port that clients must use.
+  // If the user gave port 0, only the open sockets know the real port.
   for (const UdpSocket& socket : server.sockets()) served.addresses.push_back(socket.address());
   served.reachable = reachable_at(flags.listen, own_addresses());
   served.port = server.sockets().front().port();
@@ -164,9 +165,8 @@ ServedPort served_port(const TimeServer& server, const std::optional<NodeReceive
   return served;
 }
 
-/// Reports changes while the server runs.
-/// The server calls it four times a second. It remembers what was printed, so each line reports a
-/// change. All references must outlive it.
+/// Prints changes while the server runs. The server calls it four times a second. It remembers the
+/// last printed state, so each line reports a change. All references must outlive it.
 class ServerPrinter {
  public:
   ServerPrinter(const TimeServer& server, std::optional<NodePrinter>& nodes, Console& console)
@@ -176,7 +176,7 @@ class ServerPrinter {
         progress_(console.progress()),
         printed_(server.state()) {}
 
-  /// Reports what changed since the last call. False: the server has to stop.
+  /// Prints what has changed since the last call. Returns false if the server has to stop.
   bool operator()() {
     print_clock();
     print_misdirected();
@@ -199,24 +199,24 @@ class ServerPrinter {
 
   void print_clock() {
     const NtpServerState& now = server_.state();
-    // Other members of the state, such as the dispersion, change at every moment and are no news.
+    // Other members of the state, such as the dispersion, change all the time and are not printed.
     if (now.leap == printed_.leap && now.stratum == printed_.stratum) return;
     printed_ = now;
     print_live(console_, "the clock is now " + clock_text(now));
     console_.print_json(clock_json(now));
     console_.flush();
   }
-  /// Reports nodes at the NTP port once; the count goes on.
+  /// Warns once if a node sends to the NTP port; such datagrams are still counted.
   void print_misdirected() {
-    // A node at the NTP port gets no useful answer. One warning is enough to find the wrong
-    // setting.
+    // A node gets no useful answer from the NTP port. One warning is enough for the user to find
+    // the wrong setting.
     if (misdirected_printed_ || server_.counts()[NtpOutcome::from_node] == 0) return;
     misdirected_printed_ = true;
     print_live(console_,
                "warning: a node sends to the NTP port; it must send to the port of --node-port");
   }
-  /// Reports each fault of stdout once, as long as it lasts: otherwise nobody may notice it for
-  /// hours.
+  /// Prints each fault of stdout once for as long as it lasts. Without the line nobody may notice
+  /// for hours that the output is lost.
   void print_trouble() {
     const std::string trouble = console_.out_trouble();
     if (std::exchange(out_trouble_, trouble) == trouble) return;
@@ -227,7 +227,7 @@ class ServerPrinter {
   }
   void print_counts() {
     constexpr double every_s = 10;
-    // The n-th line is due n times 10 s after the start, so lines do not drift.
+    // Line n is printed n * 10 s after the start, so that a late line does not delay later ones.
     if (elapsed_s() < every_s * (counts_printed_ + 1)) return;
     ++counts_printed_;
     console_.print_json(counts_json(server_.counts(), "counts", elapsed_s()));
@@ -239,7 +239,7 @@ class ServerPrinter {
   Console& console_;
   Progress progress_;
   NtpServerState printed_;
-  std::string out_trouble_;  // the fault that was reported and still lasts
+  std::string out_trouble_;  // the fault that was printed and still lasts
   Clock::time_point began_ = Clock::now();
   int counts_printed_ = 0;
   bool misdirected_printed_ = false;
@@ -247,22 +247,23 @@ class ServerPrinter {
 
 Result<int> run(TimeServerFlags& o, Call& call) {
   Console& console = call.console;
-  // A blocked reader of standard output must not delay answers to clients.
+  // A program that reads stdout slowly must not delay the answers to clients.
   console.never_wait();
   o.listen = KA_TRY(addresses_of(o.listen));
   const LabKeyFile lab = KA_TRY(read_key_file(o, call));
-  // The advice follows the step that comes next, since each port has its own flag.
+  // The advice is for the port that is opened next, since each port has its own flag.
   console.if_it_fails(advice_on_port("--port", o.port));
   TimeServer server = KA_TRY(TimeServer::open(KA_TRY(options_of(o))));
   console.if_it_fails(advice_on_port("--node-port", o.node_port.value_or(0)));
   SystemClocks clocks;
-  // The receiver is opened after the server. If it fails, no client was served yet.
+  // The receiver of nodes is opened after the server. If that fails, no client has been answered
+  // yet.
   auto nodes = KA_TRY(open_nodes(o, lab.key, clocks));
   const ServedPort served = served_port(server, nodes, o);
   console.print(harmless(start_lines(served, server.state())));
   console.print_json(start_json(served, server.state()));
-  // The leap indicator tells clients not to follow this server. The user must learn that at the
-  // start.
+  // If this machine's clock is not synchronised, clients ignore the server. The user must learn
+  // that at the start.
   if (server.state().leap == NtpLeap::unsynchronised) {
     console.note(
         "kinalign time-server: warning: this machine's clock is not synchronised, so clients will "
@@ -273,7 +274,8 @@ Result<int> run(TimeServerFlags& o, Call& call) {
   std::optional<NodePrinter> node_printer;
   if (nodes) node_printer.emplace(*nodes, console, call.surroundings.files, lab);
   ServerPrinter printer(server, node_printer, console);
-  // serve() returns after Ctrl-C. The nodes' port is served first, since it also stamps data.
+  // serve() returns after Ctrl-C. The nodes' port comes first, because arrival times there stamp
+  // data.
   server.serve([&printer] { return printer(); }, nodes ? &*nodes : nullptr);
   printer.print_end();
   return 0;
