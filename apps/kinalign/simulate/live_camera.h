@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sender of a Kinect, live: docs/formats/kinect_stream.md, binary, over UDP. It has a clock of
-// its own besides the sensor's.
+// Simulates the program that sends a Kinect's frames live: the binary stream of
+// docs/formats/kinect_stream.md over UDP. The program has another clock than the sensor.
 #pragma once
 
 #include "apps/kinalign/simulate/live_socket.h"
@@ -14,30 +14,30 @@
 
 namespace kinalign {
 
-/// `session` is new in each run, so a host does not mix this run with an earlier one.
+/// The settings of one run. `session` is new in each run, so that a host does not mix the run with
+/// an earlier one.
 struct LiveCameraOptions {
   std::uint64_t seed = 1;
   std::uint32_t session = 0;
-  HostTime start{};       // time 0 of the motion
-  double length_s = 0.0;  // the motion's, s
+  HostTime start{};       // the host's time at which the motion begins
+  double length_s = 0.0;  // length of the motion, s
 };
 
-/// Three schedules run side by side: frames by the sensor's ticks, hellos once a second, pings five
-/// times a second. Hellos and pings end with the motion. Invariant: frame_ is the next frame that
-/// was not sent.
+/// Sends frames at the sensor's ticks, a hello once a second and a ping five times a second. Hellos
+/// and pings end with the motion. Invariant: frame_ is the first frame that has not been sent.
 class LiveCamera {
  public:
   LiveCamera(const Rehearsal& rehearsal, const LiveCameraOptions& options, ClockReader& clock,
              LiveSocket socket);
 
-  /// Takes pongs, and sends the frames, hellos and pings that are due.
+  /// Receives pongs, and sends all frames, hellos and pings that are due.
   void work();
-  /// The time of the next frame, hello or ping.
+  /// The time at which the next frame, hello or ping is due.
   HostTime next() const;
   int fd() const { return socket_.fd(); }
-  std::uint64_t sent() const { return sent_; }  // frames
+  std::uint64_t sent() const { return sent_; }  // number of frames
   LiveTraffic traffic() { return socket_.traffic(); }
-  /// The longest delay of a frame by this machine.
+  /// The longest time by which this machine sent a frame too late.
   Duration worst_late() const { return worst_late_; }
 
  private:
@@ -48,7 +48,7 @@ class LiveCamera {
   void send_ping();
   bool send(const KinectMessage& message);
   KinectOrigin origin(std::uint32_t& sequence) const { return {1, session_, sequence++}; }
-  // The program's clock in units of 100 ns, as it stands in messages.
+  // The time of the sender's clock in units of 100 ns, as messages have it.
   std::int64_t sender_ticks(HostTime t) const;
 
   const Rehearsal& rehearsal_;

@@ -8,9 +8,9 @@ namespace kinalign {
 
 namespace {
 
-constexpr double frame_rate_hz = 15.0;  // the firmware's
+constexpr double frame_rate_hz = 15.0;  // as the firmware sends
 
-/// All other settings are the firmware's defaults.
+/// The settings of a simulated node. All that are not set here are the firmware's defaults.
 NodeSettings settings_of(const LiveNodeOptions& options) {
   NodeSettings settings;
   settings.node_id = options.id;
@@ -20,7 +20,8 @@ NodeSettings settings_of(const LiveNodeOptions& options) {
 
 }  // namespace
 
-/// A clockless node sends each sample in a request of its own; both kinds run the firmware's logic.
+/// Both kinds of node run the firmware's own code. A node without a counter sends each sample as
+/// one request.
 LiveNode::LiveNode(const SimulatedNode& node, const LiveNodeOptions& options, ClockReader& clock,
                    LiveSocket socket)
     : samples_(node),
@@ -28,7 +29,7 @@ LiveNode::LiveNode(const SimulatedNode& node, const LiveNodeOptions& options, Cl
       start_(options.start),
       counter_(node.seed, options.length_s),
       socket_(std::move(socket)),
-      // The same seed in both directions is no mistake: `way` separates their random numbers.
+      // Both directions have the same seed; `way` gives them different random numbers.
       up_({.link = options.link}, node.seed, Way::up, frame_rate_hz),
       down_({.link = options.link}, node.seed, Way::down, frame_rate_hz) {
   if (options.clockless) {
@@ -38,19 +39,19 @@ LiveNode::LiveNode(const SimulatedNode& node, const LiveNodeOptions& options, Cl
   }
 }
 
-/// Runs the node: arrived datagrams, due samples, the firmware's poll, and datagrams at the end of
-/// the link. While a sample is taken, counter_us() gives the sample's own time, so waking up late
-/// does not shift it.
+/// Does the node's work in this order: datagrams that have arrived, samples that are due, the
+/// firmware's poll(), datagrams that leave the simulated radio. While a sample is taken,
+/// counter_us() returns the sample's own time. A late wake-up therefore does not shift a sample.
 void LiveNode::work() {
   std::array<std::uint8_t, max_node_datagram> room{};
-  // Datagrams of the host enter the simulated radio first. The node receives them when they leave
-  // it.
+  // Datagrams from the host enter the simulated radio here. The node receives them after the
+  // radio's delay.
   while (const std::size_t size = socket_.receive(room)) {
     down_.put(clock_.raw(), std::span(room).first(size));
   }
   auto* counting = std::get_if<Node>(&node_);
   auto* clockless = std::get_if<ClocklessNode>(&node_);
-  // Samples are taken before poll(), which puts them into frames.
+  // Samples are taken before poll(), because poll() puts them into frames.
   sampling_ = true;
   while (sample_due(counter_at(clock_.raw()))) {
     if (counting != nullptr) counting->tick(1);
@@ -60,14 +61,14 @@ void LiveNode::work() {
   sampling_ = false;
   if (counting != nullptr) counting->poll();
   if (clockless != nullptr) clockless->poll();
-  // The radio's delay is over: the datagram now goes to the host over the real network.
+  // After the radio's delay a datagram goes to the host over the real network.
   while (const auto datagram = up_.take(clock_.raw())) (void)socket_.send(*datagram);
 }
 
-/// The earliest time at which work() has something to do.
+/// The time at which work() must be called next.
 HostTime LiveNode::next() const {
-  // Three kinds of work can come next: a datagram that arrives, the firmware's own work, and a
-  // sample.
+  // It is the earliest of three times: a datagram leaves the radio, the firmware has work, a sample
+  // is due.
   const std::uint64_t now_us = counter_at(clock_.raw());
   HostTime next = std::min(up_.next(), down_.next());
   if (const auto* counting = std::get_if<Node>(&node_)) {
@@ -79,7 +80,7 @@ HostTime LiveNode::next() const {
   return next;
 }
 
-/// The counts of either kind of node. A request of a clockless node has one sample.
+/// The counts of either kind of node. Each request of a node without a counter has one sample.
 LiveNodeCounts LiveNode::counts() {
   LiveNodeCounts counts;
   if (auto* counting = std::get_if<Node>(&node_)) {
@@ -99,15 +100,16 @@ std::uint64_t LiveNode::counter_at(HostTime t) const {
   return static_cast<std::uint64_t>(counter_.reading(seconds(t - start_)) * 1e6);
 }
 
-/// The host's time of a counter value, with 1 us added, so that the counter has reached it.
+/// The host's time at which the counter has this value, plus 1 us so that the counter has surely
+/// reached it.
 HostTime LiveNode::host_at(std::uint64_t counter_us) const {
   const double s = counter_.host(static_cast<double>(counter_us) * 1e-6);
   return start_ + from_seconds(s) + std::chrono::microseconds(1);
 }
 
 std::uint64_t LiveNode::counter_us() {
-  // During a sample the firmware reads the counter, and it must read the time for which the sample
-  // was made.
+  // The firmware reads the counter while it takes a sample. It must then read the time for which
+  // the sample was simulated.
   return sampling_ ? samples_.samples[next_sample_].counter_us : counter_at(clock_.raw());
 }
 
@@ -116,7 +118,7 @@ bool LiveNode::read_imu(NodeSample& sample) {
   return true;
 }
 
-// The simulated radio always accepts. A loss is found only at its end.
+// The simulated radio accepts every datagram and may lose it later.
 bool LiveNode::send(std::span<const std::uint8_t> datagram) {
   up_.put(clock_.raw(), datagram);
   return true;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A live node: the firmware's own logic (firmware/node) with samples made beforehand, a counter
-// made of the host's clock, and a radio in both directions. Each sample has exactly the time for
-// which it was made, however late this program wakes up: on a board a timer of higher priority
-// takes the samples.
+// Simulates an inertial node live. It runs the firmware's own code (firmware/node) on samples that
+// were simulated beforehand. Its counter is computed from the host's clock, and a simulated radio
+// delays both directions. Each sample has exactly its planned time, even if this program wakes up
+// late: on a real board a timer of high priority takes the samples.
 #pragma once
 
 #include "apps/kinalign/simulate/live_socket.h"
@@ -22,9 +22,9 @@
 
 namespace kinalign {
 
-/// One direction of the node's simulated link. A fate is drawn for each datagram when it is put:
-/// lost, delayed, or duplicated. The queue sorts by arrival, so datagrams may overtake each other
-/// as on a real radio. The limit of waiting datagrams bounds the memory.
+/// One direction of the node's simulated radio. When a datagram is put in, its fate is drawn at
+/// random: lost, delayed or duplicated. The queue is sorted by the time of arrival, so datagrams
+/// may come out of order, as on a real radio. The number of waiting datagrams has a limit.
 class LiveLink {
  public:
   LiveLink(const LinkOptions& options, std::uint64_t seed, Way way, double rate_hz)
@@ -38,14 +38,14 @@ class LiveLink {
       }
     }
   }
-  /// The earliest datagram that has arrived by `now`; absent if there is none.
+  /// The earliest datagram that has arrived by `now`. Empty if none has arrived.
   std::optional<std::vector<std::uint8_t>> take(HostTime now) {
     if (waiting_.empty() || waiting_.top().at > now) return std::nullopt;
     auto datagram = waiting_.top().datagram;
     waiting_.pop();
     return datagram;
   }
-  /// The arrival of the next datagram.
+  /// The time at which the next datagram arrives.
   HostTime next() const { return waiting_.empty() ? HostTime::max() : waiting_.top().at; }
 
  private:
@@ -54,7 +54,7 @@ class LiveLink {
     HostTime at;
     std::vector<std::uint8_t> datagram;
 
-    bool operator<(const Packet& other) const { return at > other.at; }  // the earliest on top
+    bool operator<(const Packet& other) const { return at > other.at; }  // puts the earliest on top
   };
 
   PacketFates fates_;
@@ -64,19 +64,19 @@ class LiveLink {
 struct LiveNodeOptions {
   std::uint32_t id = 1, boot_id = 1;
   Link link = Link::paper;
-  bool clockless = false;  // no counter: a request for each sample (wire/clockless.h)
-  HostTime start{};        // time 0 of the motion
-  double length_s = 0.0;   // the motion's, s
+  bool clockless = false;  // true: no counter, one request for each sample (wire/clockless.h)
+  HostTime start{};        // the host's time at which the motion begins
+  double length_s = 0.0;   // length of the motion, s
 };
 
-/// The counts of either kind of node.
+/// The counts of a node, with or without a counter.
 struct LiveNodeCounts {
-  std::uint64_t sent = 0, samples = 0;  // frames or requests, and the samples in them
-  std::uint64_t answered = 0;           // answers of the host that reached the node
+  std::uint64_t sent = 0, samples = 0;  // frames or requests, and their samples
+  std::uint64_t answered = 0;           // replies of the host that reached the node
 };
 
-/// The functions of Board are called by the node's logic, inside of work(). Invariant: next_sample_
-/// counts the samples that were taken.
+/// A live node. During work() the firmware's code calls the functions of Board. Invariant:
+/// next_sample_ samples have been taken.
 class LiveNode final : public Board {
  public:
   LiveNode(const SimulatedNode& node, const LiveNodeOptions& options, ClockReader& clock,
@@ -85,9 +85,9 @@ class LiveNode final : public Board {
   LiveNode& operator=(const LiveNode&) = delete;
   ~LiveNode() = default;
 
-  /// Does everything that is due.
+  /// Does all work that is due.
   void work();
-  /// The time of the next work, if no datagram arrives before.
+  /// The time at which work() must be called next, if no datagram arrives before.
   HostTime next() const;
   int fd() const { return socket_.fd(); }
   LiveNodeCounts counts();
@@ -107,7 +107,7 @@ class LiveNode final : public Board {
     return next_sample_ < samples_.samples.size() &&
            samples_.samples[next_sample_].counter_us <= now_us;
   }
-  // Both directions of the counter's clock: from the host's time, and back.
+  // Convert between the host's time and the node's counter.
   std::uint64_t counter_at(HostTime t) const;
   HostTime host_at(std::uint64_t counter_us) const;
 
@@ -116,13 +116,13 @@ class LiveNode final : public Board {
   HostTime start_;
   SimulatedClock counter_;
   LiveSocket socket_;
-  // up_ leads to the host, down_ to the node.
+  // up_ is the radio to the host, down_ the radio to the node.
   LiveLink up_, down_;
-  // Empty only during construction; then one of both kinds.
+  // The firmware's code, with or without a counter. It is empty only during construction.
   std::variant<std::monostate, Node, ClocklessNode> node_;
-  /// The next sample to take.
+  /// The index of the next sample to take.
   std::size_t next_sample_ = 0;
-  /// True while a sample is taken; counter_us() then gives its time.
+  /// True while a sample is taken; counter_us() then returns the sample's time.
   bool sampling_ = false;
 };
 

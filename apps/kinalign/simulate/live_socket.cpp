@@ -23,11 +23,11 @@ Result<void> check_live_address(const std::string& host) {
 }
 
 Result<LiveSocket> LiveSocket::connected_to(const std::string& host, std::uint16_t port) {
-  // The check is repeated here, so the address below is never null.
+  // The check is repeated here, so that `address` below is never null.
   KA_TRY(check_live_address(host));
   const FoundAddress address = find_address(host, port, SOCK_DGRAM);
   LiveSocket made(::socket(address->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  // A connected UDP socket receives from its peer only, and learns of ICMP refusals.
+  // A connected UDP socket receives only from its peer, and reports ICMP messages of the peer.
   if (made.fd() < 0 || ::connect(made.fd(), address->ai_addr, address->ai_addrlen) != 0) {
     return Failure(Error{"--to", 0, "a network route to " + host + " port " + std::to_string(port),
                          std::strerror(errno)});
@@ -35,10 +35,11 @@ Result<LiveSocket> LiveSocket::connected_to(const std::string& host, std::uint16
   return made;
 }
 
-/// Reads and counts a pending refusal (ICMP: no program listens there). The kernel keeps it in the
-/// socket, and the next send or receive would fail with it and do nothing else.
+/// Reads and counts a refusal by the host: an ICMP message that no program listens at the port. The
+/// kernel keeps the message in the socket; the next send or receive would return it as an error and
+/// do nothing else.
 void LiveSocket::read_refusal() {
-  // Reading SO_ERROR also clears it.
+  // getsockopt(SO_ERROR) also clears the error.
   int refusal = 0;
   socklen_t size = sizeof refusal;
   const bool asked = ::getsockopt(fd(), SOL_SOCKET, SO_ERROR, &refusal, &size) == 0;
@@ -57,7 +58,7 @@ bool LiveSocket::send(std::span<const std::uint8_t> datagram) {
 std::size_t LiveSocket::receive(std::span<std::uint8_t> room) {
   read_refusal();
   const ssize_t size = ::recv(fd(), room.data(), room.size(), 0);
-  // A negative size means that nothing has come.
+  // A negative size means that no datagram has arrived.
   if (size < 0) return 0;
   ++traffic_.received;
   return static_cast<std::size_t>(size);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device's UDP socket for `simulate --live`: sends to one port and receives from that port only.
+// A UDP socket of a device in `simulate --live`. It sends to one port and receives only from that
+// port.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -11,38 +12,39 @@
 
 namespace kinalign {
 
-/// The datagrams of one socket, or of several.
+/// The number of datagrams of one socket, or of several.
 struct LiveTraffic {
-  std::uint64_t sent = 0;  // given to send(), accepted or not
-  /// The datagrams that the system or, by ICMP, the host refused: no route, or no program there.
+  std::uint64_t sent = 0;  // passed to send(), accepted or not
+  /// The datagrams that the system refused (no route) or the host refused by ICMP (no program at
+  /// the port).
   std::uint64_t refused = 0;
-  std::uint64_t received = 0;  // received from the host
+  std::uint64_t received = 0;  // datagrams from the host
 
   LiveTraffic& operator+=(const LiveTraffic& more);
 };
 
-/// Fails if `host` is not a numeric address of IPv4 or IPv6; names are not looked up.
+/// Fails if `host` is no numeric IPv4 or IPv6 address. Names are not looked up.
 Result<void> check_live_address(const std::string& host);
 
-/// Each device has a socket of its own, so the host sees each as a sender with its own port.
+/// The socket of one device. Each device has one, so that the host sees different senders.
 class LiveSocket {
  public:
-  /// A socket on a port that the system chooses. `host`: a numeric address, IPv4 or IPv6. Fails if
-  /// it is none, or if this machine has no route to it.
+  /// Opens a socket whose own port the system chooses. `host`: a numeric IPv4 or IPv6 address.
+  /// Fails if `host` is no such address, or if this machine has no route to it.
   static Result<LiveSocket> connected_to(const std::string& host, std::uint16_t port);
 
-  /// False if the system did not accept the datagram. A port without a listener is known only after
-  /// sending: see traffic().
+  /// Returns false if the system refuses the datagram. A port at which no program listens shows
+  /// only later: see traffic().
   bool send(std::span<const std::uint8_t> datagram);
-  /// The next datagram, cut to `room`; 0 bytes if there is none.
+  /// Receives the next datagram, cut to the size of `room`. Returns 0 if none has arrived.
   std::size_t receive(std::span<std::uint8_t> room);
-  /// The counts up to now.
+  /// The number of datagrams so far.
   const LiveTraffic& traffic();
   int fd() const { return socket_.fd(); }
 
  private:
   explicit LiveSocket(int fd) : socket_(fd) {}
-  // The kernel keeps at most one refusal for each socket, so several of them may count as one.
+  // The kernel stores at most one refusal for each socket, so several refusals may count as one.
   void read_refusal();
 
   Handle socket_;

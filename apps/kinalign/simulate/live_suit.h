@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program of a suit that broadcasts live: Noitom's binary stream with displacement, over UDP,
-// and the clicks on this program.
+// Simulates the program of a motion capture suit that broadcasts live: Noitom's binary stream with
+// positions, over UDP. Also simulates the user's clicks in this program.
 #pragma once
 
 #include "apps/kinalign/simulate/live_socket.h"
@@ -15,25 +15,26 @@
 
 namespace kinalign {
 
-/// The delay, s, of a device's own program from the measurement to the socket: 2 ms, plus an
-/// exponential part of 1 ms in the mean. These are low estimates: the host can't see the delay, and
-/// real programs take longer.
+/// The delay, s, from a measurement to the sending of its frame in a device's program: 2 ms plus an
+/// exponential part with mean 1 ms. Real programs probably take longer; the host can't measure the
+/// delay.
 inline double program_delay_s(const RandomStream& random, std::uint64_t frame) {
   return 0.002 + random.exponential(frame, 0, 0.001);
 }
 
-/// It knows no clock but the host's: the stream has no stamps, only frame numbers.
+/// A suit that sends live. Its stream has only frame numbers and no stamps, so it needs no clock
+/// other than the host's.
 class LiveSuit {
  public:
   LiveSuit(const Motion& motion, const MocapRun& run, std::uint64_t seed, HostTime start,
            LiveSocket socket);
 
-  /// Sends the frames that are due.
+  /// Sends all frames that are due.
   void work(HostTime now);
   HostTime next() const { return next_; }
   std::uint64_t sent() const { return sent_; }
   LiveTraffic traffic() { return socket_.traffic(); }
-  /// The longest delay of a frame by this machine.
+  /// The longest time by which this machine sent a frame too late.
   Duration worst_late() const { return worst_late_; }
 
  private:
@@ -53,14 +54,16 @@ class LiveSuit {
   Duration worst_late_{0};
 };
 
-/// The clicks on the suit's program. Each is sent to the recorder as a mark, twice, like from a
-/// program that controls the lab. Invariant: calls_[0] to calls_[sent_ - 1] were sent.
+/// The user's clicks in the suit's program. Each click is sent to the recorder as a mark, in two
+/// datagrams, as a program that controls the lab would send it. Invariant: calls_[0] to
+/// calls_[sent_ - 1] have been sent.
 class LiveClicks {
  public:
-  /// `run`: differs in each run, so that its marks are not taken for repeats of an earlier run's.
+  /// `run`: a number that differs in each run, so that the recorder does not take the marks for
+  /// repeats of an earlier run.
   LiveClicks(const MocapRun& mocap, std::uint64_t run, HostTime start, LiveSocket socket);
 
-  /// Sends the calls that are due, and takes the answers, which are only counted.
+  /// Sends the marks that are due. Answers are received and only counted.
   void work(HostTime now);
   LiveTraffic traffic() { return socket_.traffic(); }
   HostTime next() const { return sent_ < calls_.size() ? calls_[sent_].at : HostTime::max(); }
@@ -73,7 +76,7 @@ class LiveClicks {
   void add(Mark::Kind kind, const std::string& id, HostTime at);
 
   LiveSocket socket_;
-  std::vector<Call> calls_;  // in the order of their times
+  std::vector<Call> calls_;  // sorted by time
   std::size_t sent_ = 0;
 };
 

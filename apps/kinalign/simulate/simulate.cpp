@@ -22,10 +22,10 @@ namespace kinalign {
 namespace {
 
 constexpr std::string_view built_in = "built-in";
-// A rehearsal of an hour is the longest; a BVH larger than most_bvh is refused.
+// The default and the largest length of a rehearsal, s, and the largest size of a BVH file, bytes.
 constexpr double usual_s = 60.0, most_s = 3600.0;
 constexpr std::size_t most_bvh = std::size_t{256} << 20;
-// Simulated recordings begin at this time, so that the same seed gives the same bytes.
+// Simulated recordings always begin at this time, so that the same seed gives the same bytes.
 constexpr std::int64_t start_ns = 1'790'000'000'000'000'000;
 
 /// The options of `kinalign simulate`.
@@ -36,13 +36,12 @@ struct Simulate {
   std::int64_t node_rate = 100;
   std::string node_stamps = "own";
   bool live = false;
-  // --live only; run() sets the link and the seed of `sending`
+  // These two are for --live only. run() copies the link and the seed into `sending`.
   std::string link = "C";
   LiveOptions sending;
 };
 
-/// Refuses two devices on one port: they could not be told apart, and a recorder opens one port for
-/// one device.
+/// Refuses the same port for two devices, because a recorder opens one port for each device.
 Result<void> check_live_ports(const LiveOptions& o) {
   std::map<std::int64_t, const char*> flags;
   for (const auto& [port, flag] :
@@ -56,12 +55,12 @@ Result<void> check_live_ports(const LiveOptions& o) {
   return {};
 }
 
-/// Checks flags against each other: most of them need --live.
+/// Checks flags that exclude or need each other; most of them need --live.
 Result<void> check_simulate(const Simulate& o, const Common& common, const Sources& given) {
   if (common.out.empty()) return Failure(Error{"--out", 0, "a new folder's name", "none"});
   if (o.live) {
     KA_TRY(check_live_address(o.sending.to));
-    // Files have no ports, so ports are checked for live runs only.
+    // Only a live run uses ports.
     KA_TRY(check_live_ports(o.sending));
     if (!given.contains("node_stamps")) return {};
     return Failure(
@@ -114,19 +113,20 @@ Usage describe_simulate(Simulate& o) {
   return usage;
 }
 
-/// The built-in motion, or that of a BVH, which --seconds may shorten.
+/// The built-in motion or the motion of a BVH file. --seconds may shorten it.
 Result<Motion> motion_of(const Simulate& o, Call& call) {
   const std::string& name = o.motion.front();
   if (name == built_in) {
     return built_in_motion(
         {.length_s = o.seconds.value_or(usual_s), .seed = static_cast<std::uint64_t>(o.seed)});
   }
-  // A mistyped "built-in" would be reported as a missing file, so a suggestion is added.
+  // A typing error in "built-in" would be reported as a missing file, so the advice suggests the
+  // right word.
   call.console.if_it_fails([near = suggestion(name, {std::string(built_in)})](const Error&) {
     return near.empty() ? std::vector<std::string>{} : std::vector<std::string>{near};
   });
   const std::string text = KA_TRY(read_whole(call.surroundings.files, name, most_bvh));
-  // The suggestion must not appear below errors of a file that was read.
+  // The file exists, so the suggestion must not appear below errors in its content.
   call.console.if_it_fails({});
   const BvhFile file = KA_TRY(read_bvh(text, name, {}));
   auto motion = kinalign::motion_of(file.clip);
@@ -135,16 +135,17 @@ Result<Motion> motion_of(const Simulate& o, Call& call) {
   return motion;
 }
 
-/// Adds to a truth the members that only the verb knows.
+/// Adds to the truth what only this verb knows: the seed and the names of the motion.
 TrueRecording named(TrueRecording truth, const Simulate& o) {
   truth.seed = static_cast<std::uint64_t>(o.seed);
-  // The truth holds only the file's name, so it is the same in every folder.
+  // The truth has the file's name without its folder, so that it does not depend on where the file
+  // is.
   truth.motion = o.motion.front() == built_in ? built_in : file_name(o.motion.front());
   truth.motion_file = "motion.bvh";
   return truth;
 }
 
-/// The parts that a rehearsal is made from.
+/// Everything that is needed to write or send a rehearsal.
 struct Job {
   const Simulate& o;
   RehearsalFolder folder;
@@ -159,7 +160,7 @@ Result<int> write_files(const Job& job, Call& call) {
   const NodeStamps stamps = o.node_stamps == "own" ? NodeStamps::own : NodeStamps::arrival;
   KA_TRY(write_devices(job.folder, job.rehearsal, job.motion, {.stamps = stamps}, truth));
   KA_TRY(write_truth(job.folder, truth));
-  // The folder is complete from here on.
+  // The folder is complete here, so the advice to delete it is removed.
   call.console.if_it_fails({});
   print_files({truth, job.rehearsal, job.folder.path, o.seconds}, call.console);
   return done;
@@ -171,8 +172,8 @@ bool is_there(FileSystem& files, const std::string& path) {
   return fd >= 0;
 }
 
-/// Writes the recorder's files and the truth before it sends, so that a recorder can be started
-/// meanwhile.
+/// Sends a rehearsal live. The recorder's files and the truth are written first, so that the user
+/// can start a recorder before the sending begins.
 Result<int> send_live(const Job& job, LiveSockets sockets, Call& call) {
   const Simulate& o = job.o;
   const LiveOptions& options = o.sending;
@@ -180,13 +181,13 @@ Result<int> send_live(const Job& job, LiveSockets sockets, Call& call) {
   KA_TRY(write_lab(job.folder, options, job.rehearsal));
   std::optional<double> clockless_hz;
   if (options.clockless) clockless_hz = static_cast<double>(o.node_rate);
-  // `align` needs the rate of nodes without a counter, since they send no stamps.
+  // Nodes without a counter send no stamps, so `align` needs their rate from the manifest.
   KA_TRY(write_live_manifest(job.folder, job.rehearsal, clockless_hz));
   SystemClocks clock;
   LiveRehearsal live(job.motion, job.rehearsal, options, clock, std::move(sockets));
   TrueRecording truth = named(live_truth(job.rehearsal, job.motion, live.start(), clockless_hz), o);
   truth.link = o.link;
-  // The truth is known before the first datagram is sent: it depends on the start only.
+  // The truth depends only on the start, so it is written before the first datagram is sent.
   KA_TRY(write_truth(job.folder, truth));
   call.console.if_it_fails({});
   print_start({truth, job.rehearsal, job.folder.path, o.seconds}, options, call.console);
@@ -194,23 +195,24 @@ Result<int> send_live(const Job& job, LiveSockets sockets, Call& call) {
   sent.length_s = job.motion.length_s;
   sent.sent_s = live.run([] { return !interrupted(); });
   sent.counts = live.counts();
-  // The recorder may have written into another folder. The next step in the text depends on it.
+  // If the recorder wrote into this folder, the text names the next step.
   sent.recorded_there = is_there(job.folder.files, job.folder.path + "/" + live_take_name);
   print_end(sent, call.console);
-  // Exit codes: stopped by Ctrl-C, 1 if no program answered, else 0.
+  // The exit code is `stopped` after Ctrl-C, 1 if no program answered, else 0.
   if (!sent.whole()) return stopped;
   return sent.unanswered() ? findings : done;
 }
 
-/// Checks the motion and the route to the host before it makes a folder.
+/// The motion and the route to the host are checked before a folder is made.
 Result<int> run(Simulate& o, Call& call) {
-  // The letters A to G are the values of Link in this order.
+  // The letters A to G name the values of Link in their order.
   o.sending.link = static_cast<Link>(o.link.front() - 'A');
   o.sending.seed = static_cast<std::uint64_t>(o.seed);
   const std::string& name = o.motion.front();
   const Motion motion = KA_TRY(motion_of(o, call));
   call.console.if_it_fails([](const Error&) {
-    // The advice is for check_live() only: files accept any skeleton that can be simulated.
+    // This advice is only for errors of check_live(), since files may have other skeletons than the
+    // live stream.
     return std::vector<std::string>{"without --live the motion can be simulated into files"};
   });
   if (o.live) KA_TRY(check_live(motion, name));
@@ -225,18 +227,18 @@ Result<int> run(Simulate& o, Call& call) {
                                     "ip route get " + to + " shows this machine's route to it"};
   });
   std::optional<LiveSockets> sockets;
-  // The sockets are opened before the folder is made.
+  // The sockets are opened before the folder is made, so that an error leaves no folder.
   if (o.live) sockets = KA_TRY(open_live(o.sending, rehearsal->nodes.size()));
   call.console.if_it_fails({});
   const RehearsalFolder folder{call.surroundings.files, call.common.out};
-  // An existing folder is refused, so no file of another simulation can be mixed in.
+  // An existing folder is refused, so that files of two simulations are never mixed.
   KA_TRY(make_new_folder(folder.path));
-  // From here on a failure leaves files behind, so the advice changes.
+  // After a failure below, the folder has only some of its files.
   call.console.if_it_fails([path = folder.path](const Error&) {
     return std::vector<std::string>{path + " is incomplete: delete it"};
   });
   KA_TRY(make_new_folder(folder.path + "/truth"));
-  // The motion belongs to the truth of both ways, live and files.
+  // The motion is part of the truth, for files and for live runs.
   KA_TRY(write_motion(folder, motion));
   const Job job{o, folder, motion, *rehearsal};
   return sockets ? send_live(job, *std::move(sockets), call) : write_files(job, call);

@@ -17,21 +17,23 @@ namespace {
 
 constexpr double motion_rate_hz = 120.0;
 constexpr int bvh_decimals = 6;
-// The link of the stamps by arrival. Its mean delay is stated in the manifest, as a user would
-// measure it.
+// If stamps are by arrival, the samples pass over this link. The manifest states the link's mean
+// delay, as a user would measure it.
 constexpr Link arrival_link = Link::paper;
-constexpr double arrival_delay_ms = 33.2;  // mean delay of that link (docs/simulated_links.md)
+constexpr double arrival_delay_ms = 33.2;  // the link's mean delay (docs/simulated_links.md)
 
-/// Writes a clip as BVH, in blocks of frames: an hour of a body is a gigabyte of numbers.
+/// Writes a motion as BVH, a block of frames at a time: the numbers of an hour take a gigabyte of
+/// memory.
 Result<void> write_clip(const RehearsalFolder& folder, const std::string& name,
                         const Motion& motion, const MocapRun& run) {
   constexpr std::size_t block = 1024;
   OutputFile out =
       KA_TRY(OutputFile::create(folder.files, folder.path + "/" + name, Overwrite::no));
-  // All joints get position channels.
+  // Every joint has position channels.
   const BvhChannels channels(motion.skeleton, BvhChannels::Positions::of_all);
   BvhHierarchy hierarchy = channels.hierarchy(run.frames, 1.0 / run.rate_hz);
-  // With nine decimals an hour's last frame is right within 0.1 ms.
+  // With nine decimals of the frame time, the time of the last frame of an hour is right within 0.1
+  // ms.
   hierarchy.frame_time = fmt::format("{:.9f}", 1.0 / run.rate_hz);
   BvhWriter writer(hierarchy, run.frames, bvh_decimals,
                    [&](std::string_view text) { return out.write(text); });
@@ -51,18 +53,17 @@ Result<void> write_text(const RehearsalFolder& folder, const std::string& name,
   return write_whole(folder.files, folder.path + "/" + name, text, Overwrite::no);
 }
 
-/// A text file that is committed by the caller when its rows are complete.
+/// Opens a text file for a table. The caller completes the file after the last row.
 Result<TextOut> table(const RehearsalFolder& folder, const std::string& name) {
   return TextOut::create(folder.files, folder.path + "/" + name, Overwrite::no);
 }
 
 std::string node_file_name(const std::string& node) { return "imu_" + node + ".csv"; }
 
-/// The half-interval of a device's clock after that time, rounded up to hundredths of a
-/// millisecond.
+/// The largest error of a device's clock after `length_s` seconds, in ms, rounded up to hundredths.
 double interval_ms(double length_s) {
-  // 1e5 and 100 turn seconds into hundredths of a millisecond. The first constant term is the error
-  // at the start, the second keeps exact values from being rounded up.
+  // 1e5 turns seconds into hundredths of a millisecond. 1e-5 s is the error at the start. 1e-6
+  // keeps exact values from being rounded up.
   return std::ceil(1e5 * (most_drift * length_s + 1e-5) - 1e-6) / 100.0;
 }
 
@@ -73,20 +74,21 @@ StreamOptions stream_of(std::string name, std::vector<StreamFile> files) {
   return stream;
 }
 
-/// The manifest that align needs for the files. Clicks, intervals and the mean delay are known from
-/// the simulation.
+/// The manifest with which `align` aligns the files. The simulation knows the clicks, the errors of
+/// the clocks and the mean delay.
 Manifest manifest_of(const TrueRecording& truth, const DeviceChoice& devices) {
   Manifest manifest;
   manifest.subject = fmt::format("simulated_{}", truth.seed);
   manifest.action = truth.motion;
-  // The suit gives the grid of the take.
+  // The frames of the take have the times of the suit's frames.
   manifest.align.reference = "mocap";
 
   StreamOptions mocap = stream_of("mocap", {{"mocap.bvh", ""}});
   mocap.start_ns = truth.mocap.start_click_ns;
   mocap.end_ns = truth.mocap.stop_click_ns;
   mocap.click_latency_ms = std::round(1e5 * click_latency_s) / 100.0;
-  // The BVH has no time of day. The clicks on its program are all that is known of it.
+  // The BVH file has no time of day. Only the user's clicks in the suit's program tell when it was
+  // recorded.
   manifest.streams.push_back(mocap);
 
   if (devices.kinect) {
@@ -94,7 +96,7 @@ Manifest manifest_of(const TrueRecording& truth, const DeviceChoice& devices) {
     kinect.interval_ms = interval_ms(truth.length_s);
     manifest.streams.push_back(kinect);
     manifest.spaces["kinect"].method = "fit";
-    // The Kinect's space is fitted to the suit's.
+    // `align` fits the Kinect's coordinates to those of the suit.
   }
   if (!devices.nodes) return manifest;
 
@@ -104,7 +106,7 @@ Manifest manifest_of(const TrueRecording& truth, const DeviceChoice& devices) {
   }
   imu.root_node = "waist";
   if (devices.stamps == NodeStamps::arrival) {
-    // Arrival is later than measurement. The offset takes out the mean of the delay.
+    // Samples arrive later than they were measured. The offset removes the mean delay.
     imu.offset_ms = -arrival_delay_ms;
   } else {
     imu.interval_ms = interval_ms(truth.length_s);
@@ -113,15 +115,15 @@ Manifest manifest_of(const TrueRecording& truth, const DeviceChoice& devices) {
   return manifest;
 }
 
-/// Writes a file for each node. Stamps of arrival replace the truth's clock, since the file has no
-/// other.
+/// Writes a file for each node. With stamps by arrival the truth gets these stamps, since the file
+/// has no others.
 Result<void> write_nodes(const RehearsalFolder& folder, const Rehearsal& rehearsal,
                          NodeStamps stamps, TrueRecording& truth) {
   const Time zero = utc_time(truth.start_ns);
   for (std::size_t n = 0; n < rehearsal.nodes.size(); ++n) {
     const SimulatedNode& node = rehearsal.nodes[n];
     TextOut out = KA_TRY(table(folder, node_file_name(node.mounting.node_name)));
-    // Exactly one of three files is written for each node.
+    // Each node gets one file, of one of three kinds.
     if (stamps == NodeStamps::own) {
       KA_TRY(write_node(node_file(node, zero), out));
     } else if (stamps == NodeStamps::received) {
@@ -133,7 +135,7 @@ Result<void> write_nodes(const RehearsalFolder& folder, const Rehearsal& rehears
     }
     KA_TRY(out.commit());
   }
-  // The truth names the link only if it shaped the stamps or the losses.
+  // The truth names the link only if the link changed the stamps or lost samples.
   if (stamps != NodeStamps::own) truth.link = letter(arrival_link);
   return {};
 }
@@ -142,7 +144,7 @@ Result<void> write_nodes(const RehearsalFolder& folder, const Rehearsal& rehears
 
 Result<void> write_motion(const RehearsalFolder& folder, const Motion& motion) {
   MocapRun all{.rate_hz = motion_rate_hz};
-  // The last frame lies at the end of the motion or just before it; 1e-6 covers rounding.
+  // The last frame is at the end of the motion or just before it. 1e-6 allows for rounding errors.
   all.frames = static_cast<std::size_t>(motion.length_s * motion_rate_hz + 1e-6) + 1;
   return write_clip(folder, "truth/motion.bvh", motion, all);
 }
@@ -154,7 +156,7 @@ Result<void> write_suit_head(const RehearsalFolder& folder, const Motion& motion
 Result<void> write_lab(const RehearsalFolder& folder, const LiveOptions& options,
                        const Rehearsal& rehearsal) {
   std::string nodes;
-  // The ids count from 1, like the ids in the datagrams.
+  // The ids begin with 1, like the ids in the datagrams.
   for (std::size_t n = 0; n < rehearsal.nodes.size(); ++n) {
     nodes += fmt::format("{}\"{}\" = \"{}\"", n == 0 ? "" : ", ", n + 1,
                          rehearsal.nodes[n].mounting.node_name);
@@ -187,7 +189,7 @@ Result<void> write_live_manifest(const RehearsalFolder& folder, const Rehearsal&
   const std::string take = live_take_name;
   Manifest manifest;
   manifest.streams = {stream_of("mocap", {{take, ""}}), stream_of("kinect", {{take, ""}}),
-                      // The three streams lie in one recording, so all of them name the same file.
+                      // One recording contains all three streams, so all three name the same file.
                       stream_of("imu", {})};
   StreamOptions& imu = manifest.streams.back();
   for (const SimulatedNode& node : rehearsal.nodes) {
@@ -214,7 +216,7 @@ Result<void> write_devices(const RehearsalFolder& folder, const Rehearsal& rehea
     KA_TRY(kinect.commit());
   }
   if (devices.nodes) {
-    // The truth may not contain nodes that nobody recorded.
+    // The truth must not contain nodes without a file.
     KA_TRY(write_nodes(folder, rehearsal, devices.stamps, truth));
   } else {
     truth.nodes.clear();

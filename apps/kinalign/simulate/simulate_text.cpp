@@ -14,10 +14,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double same_s = 0.005;  // lengths are printed in hundredths of a second
+constexpr double same_s = 0.005;  // s; texts show lengths in hundredths of a second
 
-/// The members about a rehearsal that files and live runs share.
-/// Counts come from the rehearsal: all that was made, also what a link loses later.
+/// The JSON members that files and live runs share. All simulated samples are counted, even those
+/// that a link loses later.
 Json json_of(const RehearsalSummary& summary) {
   std::uint64_t samples = 0;
   for (const SimulatedNode& node : summary.rehearsal.nodes) samples += node.samples.size();
@@ -30,12 +30,12 @@ Json json_of(const RehearsalSummary& summary) {
           {"node_samples", samples}};
 }
 
-/// The first line, and a note if the motion is shorter than --seconds.
+/// The first line about a rehearsal, and a note if the motion is shorter than --seconds.
 std::string head_lines(const RehearsalSummary& summary) {
   const TrueRecording& truth = summary.truth;
   std::string text = fmt::format("{}: {} of {}, seed {}\n", summary.folder,
                                  duration_text(truth.length_s), truth.motion, truth.seed);
-  // The difference must be visible in the printed lengths.
+  // The note appears only if the two lengths differ as printed.
   if (summary.asked_s && *summary.asked_s > truth.length_s + same_s) {
     text += fmt::format("  note    {} is shorter than --seconds asks for ({})\n", truth.motion,
                         duration_text(*summary.asked_s));
@@ -61,7 +61,7 @@ std::vector<Port> ports_of(const SentRehearsal& sent) {
           {"marks", options.marks_port, sent.counts.clicks}};
 }
 
-/// The ports that did not accept every datagram.
+/// The line about ports that refused datagrams.
 std::string refused_line(const SentRehearsal& sent) {
   std::string list;
   for (const Port& port : ports_of(sent)) {
@@ -73,13 +73,14 @@ std::string refused_line(const SentRehearsal& sent) {
   return list.empty() ? "" : "  datagrams refused by the host: " + list + "\n";
 }
 
-/// The advice if no datagram came back from the host.
+/// The advice if the host sent no datagram back.
 std::string no_reply_line(const SentRehearsal& sent) {
   std::string ports;
   bool taken = false;
   for (const Port& port : ports_of(sent)) {
     ports += fmt::format("{}{} {}", ports.empty() ? "" : ", ", port.name, port.number);
-    // If every datagram was refused, no program listens. Otherwise only the replies are missing.
+    // If every datagram was refused, no program listens. Otherwise a program may listen, but its
+    // replies do not arrive.
     taken = taken || port.traffic.refused < port.traffic.sent;
   }
   return fmt::format(
@@ -115,7 +116,7 @@ void print_start(const RehearsalSummary& summary, const LiveOptions& options, Co
   json["start_raw_ns"] = summary.truth.host->raw_ns;
   json["start_utc_ns"] = summary.truth.host->utc_ns;
   console.print_json(json_text(json));
-  // The line must appear before the sending begins, since a program may wait for it.
+  // A program may wait for this line, so it must appear before the sending begins.
   console.flush();
 }
 
@@ -131,8 +132,8 @@ SentText sent_text(const SentRehearsal& sent) {
   text.sent += fmt::format("  {} replies reached nodes; the latest frame was sent {:.1f} ms late\n",
                            grouped(counts.replies), 1e3 * seconds(counts.worst_late));
   text.no_reply = refused_line(sent);
-  // A rehearsal that was stopped at once can't have got an answer yet.
-  // Without an answer there is no next step: the recording would be empty.
+  // A rehearsal that was stopped early may have no answer yet, so it gets no warning. Without
+  // answers the recording is empty, so no next step is named.
   const bool judged = sent.whole() || counts.all().refused > 0;
   if (sent.unanswered() && judged) text.no_reply += no_reply_line(sent);
   if (!sent.whole() || sent.unanswered()) return text;
@@ -159,8 +160,9 @@ void print_end(const SentRehearsal& sent, Console& console) {
                                     {"mocap_frames", counts.mocap_frames},
                                     {"kinect_frames", counts.kinect_frames},
                                     {"node_frames", counts.node_frames},
-                                    // "replies" are those that reached nodes through the simulated
-                                    // radio; "heard" counts all datagrams at the sockets.
+                                    // "replies" counts those that reached nodes through the
+                                    // simulated radio; "heard" counts all datagrams that the
+                                    // sockets received.
                                     {"node_samples", counts.node_samples},
                                     {"replies", counts.replies},
                                     {"datagrams", counts.all().sent},
