@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forecasts the time until the disk is full, from the bytes written in the last half minute.
+// Forecasts when the disk will be full, from the bytes written in the last half minute.
 #pragma once
 
 #include "kinalign/wire/time.h"
@@ -11,25 +11,26 @@
 
 namespace kinalign {
 
-/// Invariant: looks_ holds the looks of the last half minute in their order, so its ends give the
-/// rate.
+/// Forecasts the time until the disk is full. Invariant: looks_ has the measurements of the last
+/// half minute in their order, so the first and the last one give the rate.
 class DiskForecast {
  public:
-  /// Bytes that stay free: for the rest of the recording, its index, and the machine's own needs.
-  /// A recording whose disk is quite full could not even write its index.
+  /// The number of bytes that must stay free: for the end of the recording, its index, and the
+  /// machine's own needs. On a disk that is quite full the index could not be written.
   static constexpr std::uint64_t reserve = std::uint64_t{64} << 20;
 
-  /// Called about once a second. `written`: all bytes so far; `free`: the free bytes of the disk.
+  /// Takes a measurement; called about once a second. `written`: all bytes written so far. `free`:
+  /// the free bytes of the disk.
   void look(HostTime now, std::uint64_t written, std::uint64_t free);
 
-  /// Absent before the first look.
+  /// The free bytes of the disk. Empty before the first measurement.
   std::optional<std::uint64_t> free() const { return free_; }
-  /// Only the reserve is left: the recording has to end.
+  /// True if only the reserve is left. Recording has to end then.
   bool full() const { return free_ && *free_ <= reserve; }
-  /// The time until only the reserve is left, at the mean rate of the last half minute. Absent if
+  /// The minutes until only the reserve is left, at the mean rate of the last half minute. Empty if
   /// nothing is written.
   std::optional<double> minutes_left() const;
-  /// True if a warning is due: at 10, 5, 2 and 1 minutes left, once each.
+  /// True if the user must be warned: once each when 10, 5, 2 and 1 minutes are left.
   bool take_warning();
 
  private:
@@ -37,13 +38,14 @@ class DiskForecast {
     HostTime at{};
     std::uint64_t written = 0;
   };
-  std::deque<Look> looks_;  // the looks of the last half minute
+  std::deque<Look> looks_;  // the measurements of the last half minute
   std::optional<std::uint64_t> free_;
   double warned_ = 1e9;  // minutes left at the last warning
 };
 
-/// "disk  12 h left at this rate, 120.5 GB; 34.2 MB in takes/03_S1A02_01.mcap". The least important
-/// part stands last, since a narrow terminal cuts it off. `bytes`: written to the file.
+/// The line "disk  12 h left at this rate, 120.5 GB; 34.2 MB in takes/03_S1A02_01.mcap". A narrow
+/// terminal cuts off the end, so the least important part stands last. `bytes`: the number of bytes
+/// written to the file.
 std::string disk_text(const DiskForecast& forecast, std::uint64_t bytes, const std::string& path);
 
 }  // namespace kinalign

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table about a lab that `record` shows on a terminal. Pure functions.
+// Makes the table about a lab that `record` shows on a terminal.
 #pragma once
 
 #include "apps/kinalign/text/record_text.h"
@@ -10,23 +10,22 @@
 
 namespace kinalign {
 
-/// A line of the table. `bad`: something required is missing, or something was lost.
-/// Layout is finished; the printer only adds colours.
+/// A finished line of the table, to which the printer only adds colours. `bad`: a required sender
+/// is missing, or data was lost.
 struct TableLine {
   std::string text;
   bool bad = false;
   bool head = false;
 };
 
-/// The table: a head if there are columns besides the device, and a line for each sender, each
-/// device that has sent nothing, and each port that lost data. Columns without a value are left
-/// out; then columns from the right until the lines fit into `width` columns of the terminal. Lines
-/// that are still wider stay so.
+/// Makes the table: a head, and a line for each sender, each device that has sent nothing, and each
+/// port that lost data. Columns without a value are left out. If lines are wider than `width`
+/// columns of the terminal, the rightmost columns are left out, too. A line may still be wider
+/// after that.
 std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status, std::size_t width);
 
-/// The table in `rows` lines. If there are more, bad lines come first, and the last line states the
-/// number of the others.
-/// The table must not be longer than the terminal, since lines that scroll away can't be erased.
+/// Shortens the table to `rows` lines: lines with faults come first, and the last line states the
+/// number of hidden lines. A table longer than the terminal would scroll and could not be erased.
 std::vector<TableLine> fitted(std::vector<TableLine> table, std::size_t rows);
 
 }  // namespace kinalign

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Marks from the keyboard while a take is recorded: s start, e stop, t T-pose. Enter begins a text
-// and ends it; the mark's stamp is that of the first Enter. Esc drops the text.
+// Marks from the keyboard while a take is recorded. The keys s, e and t mark the start, the end and
+// a T-pose. Enter begins a text and ends it; the mark has the time of the first Enter. Esc drops
+// the text.
 #pragma once
 
 #include "kinalign/protocols/marks/mark.h"
@@ -17,17 +18,18 @@ namespace kinalign {
 inline constexpr const char* mark_keys_text =
     "s start  e stop  t T-pose  Enter a text  Ctrl-C ends";
 
-/// The single keys among the bytes that a terminal sent. Keys that send several bytes, such as an
-/// arrow (Esc and more), are left out.
+/// The keys among the bytes that a terminal sent. Keys that send several bytes, such as an arrow
+/// key, are left out.
 std::string single_keys(std::string_view sent);
 
-/// Two states: single keys are marks, or a text is being typed. In the second state s, e and t are
-/// letters.
+/// Turns keys into marks. There are two states: a single key is a mark, or the user types a text.
+/// While a text is typed, s, e and t are letters.
 class MarkKeys {
  public:
-  /// The mark that a key pressed at `now` completes, with its stamp; absent if it completes none.
+  /// Handles a key pressed at `now`. Returns the mark that this key completes, with its time; empty
+  /// if it completes no mark.
   std::optional<std::pair<Mark, HostTime>> take(char key, HostTime now);
-  /// The text typed so far; absent if none is typed.
+  /// The text typed so far. Empty if no text is being typed.
   std::optional<std::string> typed() const;
 
  private:
@@ -38,10 +40,9 @@ class MarkKeys {
   std::optional<Text> text_;
 };
 
-/// The keys of this program's terminal one by one, not echoed. No keys come if stdin is no
-/// terminal, or if another program is in its foreground.
-/// The mode of the terminal is changed for the whole program, so it must be restored before the
-/// program ends in any way.
+/// Reads single keys from the terminal of this program, which does not show them. No keys come if
+/// stdin is no terminal or another program is in its foreground. The terminal's mode is changed for
+/// the whole program, so it must be restored before the program ends.
 class Keyboard {
  public:
   Keyboard();
@@ -49,15 +50,15 @@ class Keyboard {
   Keyboard& operator=(const Keyboard&) = delete;
   ~Keyboard() { leave(); }
 
-  /// The descriptor to poll; absent: no keys come.
+  /// The descriptor to wait for. Empty if no keys come.
   std::optional<int> fd() const;
-  /// Restores the terminal; no keys come any more.
+  /// Restores the terminal. No keys come after this call.
   void leave();
-  /// The bytes since the last call.
+  /// The bytes that were typed since the last call.
   std::string read();
 
  private:
-  std::optional<termios> before_;  // the mode to be restored
+  std::optional<termios> before_;  // the terminal's mode before the change
 };
 
 }  // namespace kinalign

@@ -17,10 +17,11 @@ namespace kinalign {
 
 namespace {
 
-// Memory for messages that wait for a slow disk, taken before the recording begins.
+// Bytes of memory for messages that wait for a slow disk. The memory is reserved before recording
+// begins.
 constexpr std::size_t waiting_room = std::size_t{16} << 20;
 
-/// The command line of `kinalign record`, with the checks that need several flags.
+/// The command line of `kinalign record`, with checks that concern several flags.
 Usage describe_record(RecordJob& o) {
   Usage usage;
   usage.flags = {
@@ -41,7 +42,7 @@ Usage describe_record(RecordJob& o) {
        &o.live_port, 0.0, 65535.0}};
   for (const Field& field : describe(o.options)) usage.settings.push_back(field);
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
-    // The checks here need no file. Those that need lab.toml are in session_options().
+    // These checks need no file. session_options() makes the checks that need lab.toml.
     if (common.out.empty()) return Failure(Error{"--out", 0, "a folder for the files", "none"});
     if (common.out.ends_with(".mcap")) {
       return Failure(Error{"--out", 0,
@@ -56,59 +57,58 @@ Usage describe_record(RecordJob& o) {
       return Failure(
           Error{"--repeat", 0, "--wait as well, because a start mark begins each take", "none"});
     }
-    RecordJob flags = o;  // ports of marks are checked later, together with the devices of the file
+    RecordJob flags = o;  // the ports for marks are checked later, with lab.toml
     flags.marks_port.reset();
     flags.trigger_port.reset();
-    // The call is for its error: a wrong --device is wrong use.
+    // lab_of() is called only for its errors: a wrong --device is wrong use.
     KA_TRY(lab_of(flags, {}));
     return {};
   };
   return usage;
 }
 
-/// Takes memory at the start and keeps it, so that neither page faults nor a growing heap delay a
-/// datagram on its way to the file. Call before other threads begin. mallopt(3): with one arena,
-/// memory that one thread frees serves the others, too.
+/// Reserves memory at the start and keeps it. Later neither page faults nor a growing heap delay a
+/// datagram on its way to the file. Must be called before other threads begin. With one arena
+/// (mallopt(3)), memory that one thread frees can be used by the others.
 void keep_memory(std::size_t bytes) {
-  constexpr int largest_mapped = 32 << 20;  // the largest value glibc accepts; smaller blocks come
-                                            // from the heap
+  // the largest value that glibc accepts; blocks below it come from the heap
+  constexpr int largest_mapped = 32 << 20;
   mallopt(M_ARENA_MAX, 1);
-  // Setting a threshold by hand also switches off glibc's own adjustment of it.
+  // A threshold that is set by hand also stops glibc from adjusting it.
   mallopt(M_MMAP_THRESHOLD, largest_mapped);
-  // Freed memory below this size is not given back to the system.
+  // Freed memory goes back to the system only if there is more than this.
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
-  // The block is freed at the end of this function. Its pages stay in the heap.
+  // The block is freed at the end of this function, but its memory stays in the heap.
   const std::unique_ptr<void, decltype(&std::free)> room(std::malloc(bytes), &std::free);
   if (room == nullptr) return;
   std::memset(room.get(), 1, bytes);
-  // Without this the compiler may remove the memset, whose result is never read.
+  // Without this line the compiler may remove memset(), because its result is never read.
   asm volatile("" : : "r"(room.get()) : "memory");
 }
 
-/// Records until the end. From its beginning on signals are only noted, so that Ctrl-C ends
-/// a recording in order.
+/// Records until the user or a mark ends it. Signals do not end the program meanwhile, so that
+/// Ctrl-C ends the recording properly.
 Result<int> run(RecordJob& o, Call& call) {
   Console& console = call.console;
-  // The order matters: outputs never wait, then signals are noted, then memory is taken, all before
-  // the first thread and socket.
+  // Before the first thread and socket: output no longer waits for readers, signals are caught, and
+  // memory is reserved, in this order.
   console.never_wait();
   take_every_signal();
   keep_memory(waiting_room);
   RecordingSession::Options options = KA_TRY(session_options(o, call));
   KA_TRY(make_folders(call.common.out));
-  // The ports of devices and the receiver of nodes have a reader of the clocks each.
+  // The ports of devices and the receiver of nodes each need their own reader of the clocks.
   SystemClocks ports_clock, nodes_clock;
-  // Only opening ports can fail with the names of devices, so the advice is set for this call
-  // alone.
+  // This advice is only for errors of ports, which name a device.
   console.if_it_fails(lab_port_advice(o, options.lab, call));
   const auto session = KA_TRY(RecordingSession::open(
       std::move(options), {call.surroundings.files, ports_clock, nodes_clock}));
   console.if_it_fails({});
-  // RecordRun lives only for this line. Its destructor restores the terminal.
+  // RecordRun is destroyed at the end of this line and then restores the terminal.
   const int code = RecordRun(o, call, *session)();
   // Live clients get the end of the stream after the last take is on the disk.
   session->end_live();
-  take_signals();  // from here on a signal may end the program at once
+  take_signals();  // from here on a signal ends the program at once
   return code;
 }
 

@@ -24,16 +24,16 @@ namespace kinalign {
 
 namespace {
 
-/// The places that state the lab. A device may be stated in a file, by a flag, or in both. The flag
-/// then changes the device of the file.
+/// The places that describe the lab's devices: a file, flags, or both. A flag changes the device of
+/// the same name in the file.
 struct LabSources {
-  std::string file;               // the file with tables [device.NAME]; empty: none
-  std::set<std::string> by_flag;  // devices that a --device flag states
+  std::string file;               // the file with tables [device.NAME]; empty: no file
+  std::set<std::string> by_flag;  // the devices that a --device flag names
 };
 
 LabSources sources_of(const RecordJob& job, const Call& call) {
   LabSources sources{project_settings(call.surroundings, call.common.config), {}};
-  // parse_device() has accepted these texts before, so each has a '='.
+  // parse_device() has accepted these texts, so each of them contains a '='.
   for (const std::string& text : job.devices) {
     sources.by_flag.insert(text.substr(0, text.find('=')));
   }
@@ -46,17 +46,18 @@ struct MarkFlag {
   std::optional<std::int64_t> port;
 };
 
-/// Both ports of marks, so that all checks and advice treat them alike.
+/// The two ports for marks, in one list for checks and advice.
 std::array<MarkFlag, 2> mark_flags(const RecordJob& job) {
   return {
       {{"marks", "--marks-port", job.marks_port}, {"trigger", "--trigger-port", job.trigger_port}}};
 }
 
-/// Fails if a device's UDP port is also a port for marks.
+/// Fails if the UDP port of a device is also a port for marks.
 Result<void> check_mark_ports(const RecordJob& job, const Lab& lab) {
   for (const auto& [name, flag, port] : mark_flags(job)) {
     for (const DeviceOptions& device : lab.devices) {
-      // Port 0 is chosen by the system and never collides. TCP and UDP have ports of their own.
+      // For port 0 the system chooses a free port. A TCP port and a UDP port may have the same
+      // number.
       if (port.value_or(0) == 0 || device.port != *port || !is_datagrams(device.transport))
         continue;
       return Failure(Error{flag, 0, "another UDP port than that of device " + device.name,
@@ -66,24 +67,24 @@ Result<void> check_mark_ports(const RecordJob& job, const Lab& lab) {
   return {};
 }
 
-/// "skeleton of [device.mocap] in lab.toml names it": for a file that could not be read.
+/// Advice for a file that could not be read: "skeleton of [device.mocap] in lab.toml names it".
 std::string named_by(const std::string& key, const DeviceOptions& device,
                      const LabSources& sources) {
   return fmt::format("{} of [device.{}] in {} names it", key, toml_key(device.name), sources.file);
 }
 
-/// Refuses a lab that can't be recorded as stated. An error about a flag may be about the same
-/// setting in a file; then it names the file and line.
+/// Refuses a lab that can't be recorded. If a settings file caused the error, the error names the
+/// file and line in place of the flag.
 Failure refuse_lab(Error error, Call& call) {
   for (const char* name : {"marks_port", "trigger_port"}) {
-    // A port for marks may come from a file. The user needs the place where it stands.
+    // A file may set a port for marks, so the error names the place in that file.
     if (error.file != flag_of(name)) continue;
     const SettingPlace place = setting_place("record", name, call);
     if (!place.file.empty()) error.file = place.file;
     error.line = place.line;
   }
   const bool in_file = error.line > 0;
-  // refuse() makes it wrong use, with exit code 2.
+  // refuse() makes the error wrong use, with exit code 2.
   Failure refused = call.console.refuse(std::move(error));
   if (in_file) {
     call.console.if_it_fails(
@@ -92,14 +93,14 @@ Failure refuse_lab(Error error, Call& call) {
   return refused;
 }
 
-/// The settings file if it has devices; without devices the text is empty.
+/// A settings file and its devices. The text is empty if the file has no devices.
 struct LabFile {
   std::string text;
   std::vector<DeviceOptions> devices;
 };
-/// Reads the project's settings file, if there is one. Faults in its devices are wrong use.
+/// Reads the project's settings file, if it exists. An error in its devices is wrong use.
 Result<LabFile> read_lab_file(Call& call) {
-  // A settings file is written by hand; a larger one is refused.
+  // People write settings files by hand, so a larger file is refused.
   constexpr std::size_t most_bytes = std::size_t{1} << 20;
   const std::string path = project_settings(call.surroundings, call.common.config);
   if (path.empty()) return LabFile{};
@@ -107,19 +108,19 @@ Result<LabFile> read_lab_file(Call& call) {
   auto devices = read_devices(lab.text, path);
   if (!devices) return refuse_lab(std::move(devices).error(), call);
   lab.devices = *std::move(devices);
-  // The text goes into the recording only if it describes the lab.
+  // Only a file that describes the lab's devices is copied into the recording.
   if (lab.devices.empty()) lab.text.clear();
   return lab;
 }
 
-/// Empty if the system has no name. It becomes a fact of the recording.
+/// The name of this machine, which the recording states. Empty if the machine has no name.
 std::string host_name() {
   std::array<char, 256> name{};
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
-/// Some streams have rotations only. Without a skeleton they can be recorded but not shown or
-/// aligned.
+/// True if the device sends rotations only and has no skeleton. Its data can then be recorded, but
+/// not shown or aligned.
 bool needs_skeleton(const DeviceOptions& device) {
   const auto protocol = find_protocol(device.protocol);
   return protocol && row_of(*protocol).needs_skeleton;
@@ -132,9 +133,9 @@ std::string without_skeleton(const std::string& device) {
       device, toml_key(device));
 }
 
-/// Reads the lab's key. The key of the nodes' device counts unless a flag or setting names another.
-/// `named`: the device's key of the settings file for the error; empty for a flag.
-/// The advice is for reading the key only, and is removed after it.
+/// Reads the lab's key. A flag or setting overrides the key file of the nodes' device. `named`: the
+/// device's key in the settings file, for the advice; empty for a flag. The advice is removed after
+/// reading.
 Result<void> read_key(Call& call, const std::string& path, const std::string& named,
                       RecordingSession::Options& options) {
   call.console.if_it_fails([named](const Error& error) {
@@ -149,17 +150,17 @@ Result<void> read_key(Call& call, const std::string& path, const std::string& na
 
 Result<void> read_skeleton(Call& call, const DeviceOptions& device, const std::string& named,
                            RecordingSession::Options& options) {
-  // The error is about the BVH; the advice tells where it is named.
+  // The error names the BVH file; the advice states which setting names this file.
   call.console.if_it_fails([named](const Error&) { return std::vector<std::string>{named}; });
   options.skeletons[device.name] = KA_TRY(read_bvh_head(call.surroundings.files, device.skeleton));
   call.console.if_it_fails({});
   return {};
 }
 
-/// Reads the files that the devices need besides lab.toml.
+/// Reads the key files and skeletons that the devices in lab.toml name.
 Result<void> read_files(const RecordJob& job, Call& call, RecordingSession::Options& options) {
   const LabSources sources = sources_of(job, call);
-  // A flag or setting wins over the devices' own keys.
+  // A flag or setting overrides the key files of the devices.
   if (!job.lab_key.empty()) KA_TRY(read_key(call, job.lab_key, "", options));
   for (const DeviceOptions& device : options.lab.devices) {
     if (!device.lab_key.empty() && job.lab_key.empty()) {
@@ -168,18 +169,18 @@ Result<void> read_files(const RecordJob& job, Call& call, RecordingSession::Opti
     if (!device.skeleton.empty()) {
       KA_TRY(read_skeleton(call, device, named_by("skeleton", device, sources), options));
     } else if (needs_skeleton(device)) {
-      // Recording goes on: a skeleton can still be given to `align`.
+      // Recording goes on, because the skeleton can be given to `align` later.
       call.console.note(without_skeleton(device.name));
     }
   }
   return {};
 }
 
-/// The device's port with the flag, or the key of the settings file, that states it.
+/// A device's port, and the flag or the key of the settings file that sets it.
 WantedPort wanted_by(const DeviceOptions& device, const LabSources& sources) {
   WantedPort wanted{static_cast<std::uint16_t>(device.port), "", "",
                     !is_datagrams(device.transport)};
-  // The flag wins over the file, so it is the one to change.
+  // A flag overrides the file, so the user must change the flag.
   if (sources.by_flag.contains(device.name)) {
     const std::string place =
         fmt::format("--device {}={}:{}:", device.name, device.protocol, device.transport);
@@ -202,7 +203,7 @@ std::optional<std::uint16_t> port_of(const std::optional<std::int64_t>& port) {
 Result<Lab> lab_of(const RecordJob& job, std::vector<DeviceOptions> in_file) {
   Lab lab{std::move(in_file), job.options};
   std::set<std::string> named;
-  // A flag names each device once. A device of the file may be changed by one flag.
+  // Each device may have one --device flag, which may also change a device of the file.
   for (const std::string& text : job.devices) {
     const auto device = parse_device(text);
     if (!device) {
@@ -212,7 +213,7 @@ Result<Lab> lab_of(const RecordJob& job, std::vector<DeviceOptions> in_file) {
       return Failure(
           Error{"--device", 0, "devices of different names", shown(device->name) + " twice"});
     }
-    // set_device() changes the device of that name, or adds it.
+    // set_device() replaces the device of the same name, or adds a new one.
     set_device(lab, *device);
   }
   KA_TRY(validate(lab));
@@ -230,7 +231,7 @@ Result<RecordingSession::Options> session_options(const RecordJob& job, Call& ca
     return call.console.refuse(
         Error{"--device", 0, "at least one device, or a lab.toml for --config", "none"});
   }
-  // Nothing could ever start the take.
+  // Without a port for marks and without a keyboard, no mark could ever start a take.
   if (job.wait && !job.marks_port && !job.trigger_port && ::isatty(STDIN_FILENO) == 0) {
     return call.console.refuse(
         Error{"--wait", 0, "--marks-port, --trigger-port or a keyboard for the start", "none"});
@@ -240,7 +241,7 @@ Result<RecordingSession::Options> session_options(const RecordJob& job, Call& ca
   options.trigger_port = port_of(job.trigger_port);
   options.live_port = port_of(job.live_port);
   options.host = host_name();
-  // The secret is new for each run.
+  // The secret of the node receiver is new for each run.
   options.node_responder.secret = KA_TRY(new_secret());
   KA_TRY(read_files(job, call, options));
   return options;
@@ -249,12 +250,12 @@ Result<RecordingSession::Options> session_options(const RecordJob& job, Call& ca
 Advice lab_port_advice(const RecordJob& job, const Lab& lab, const Call& call) {
   const LabSources sources = sources_of(job, call);
   std::map<std::string, WantedPort> wanted;
-  // The error of a port names its device, which is the key here.
+  // The error of a port names the device, so the map's key is the device's name.
   for (const DeviceOptions& device : lab.devices) wanted[device.name] = wanted_by(device, sources);
   for (const auto& [name, flag, port] : mark_flags(job)) {
     wanted[name] = {static_cast<std::uint16_t>(port.value_or(0)), flag, "", false};
   }
-  // The advice outlives this call, so it holds the map by value.
+  // The advice is used after this function has returned, so it has a copy of the map.
   return [wanted](const Error& error) -> std::vector<std::string> {
     const auto whose = wanted.find(error.file);
     if (whose == wanted.end()) return {};

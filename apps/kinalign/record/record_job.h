@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns the flags of `record` and the lab's file into the options of a session.
+// Turns the flags and settings of `record` and the file lab.toml into the options of a recording
+// session.
 #pragma once
 
 #include "apps/cli/console.h"
@@ -13,7 +14,7 @@
 
 namespace kinalign {
 
-/// The values of the flags and settings of `record`. `options` holds those that the library
+/// The values of the flags and settings of `record`. `options` has those settings that the library
 /// describes itself.
 struct RecordJob {
   std::string subject, action;
@@ -25,17 +26,17 @@ struct RecordJob {
   RecordOptions options;
 };
 
-/// The lab of the devices in a lab.toml. --device changes where the data of a device comes from, or
-/// adds a device.
+/// The lab: the devices of a lab.toml, changed by the --device flags. Such a flag changes where the
+/// data of a device comes from, or adds a device.
 Result<Lab> lab_of(const RecordJob& job, std::vector<DeviceOptions> in_file);
 
-/// The options with all files read that the devices need. Problems of the lab are refused by the
-/// console (exit code 2).
-/// It opens no socket and writes no file, so a fault here leaves nothing behind.
+/// The options of the session. All files that the devices name are read. An error in the lab is
+/// wrong use (exit code 2). The function opens no socket and writes no file, so an error leaves no
+/// traces.
 Result<RecordingSession::Options> session_options(const RecordJob& job, Call& call);
 
-/// Advice for a port of the lab that could not be opened: the flag or file to change. The error's
-/// file is the device's name, "marks" or "trigger".
+/// Advice for a port of the lab that could not be opened: the flag or file that the user can
+/// change. The error's file is the device's name, "marks" or "trigger".
 Advice lab_port_advice(const RecordJob& job, const Lab& lab, const Call& call);
 
 }  // namespace kinalign

@@ -32,7 +32,7 @@ std::string ports_text(const RecordingSession& session) {
   return text;
 }
 
-/// Adds the ports of devices and of live clients to an event.
+/// Adds the ports of devices and of live clients to a JSON event.
 Json with_ports(Json event, const RecordingSession& session) {
   event["ports"] = Json::object();
   for (const auto& [name, port] : session.ports()) event["ports"][name] = port;
@@ -40,8 +40,8 @@ Json with_ports(Json event, const RecordingSession& session) {
   return event;
 }
 
-/// The keys that give up waiting. `ends`: recording ends anyway; else the first Ctrl-C only ends
-/// it.
+/// The keys with which the user stops waiting for the disk. The first Ctrl-C only ends the
+/// recording, unless it ends anyway (`ends`).
 std::string_view to_give_up(bool ends) { return ends ? "another Ctrl-C" : "Ctrl-C pressed twice"; }
 
 }  // namespace
@@ -52,7 +52,7 @@ RecordPrinter::RecordPrinter(RecordingSession& session, Console& console)
       names_(node_names(session.lab())),
       clock_lines_(names_) {}
 
-// Every complaint goes to people and to programs, and is written at once.
+// Every complaint is printed at once, for people and for programs.
 void RecordPrinter::complain(const std::string& text, const Json& event) {
   console_.complain(harmless("kinalign record: " + text));
   console_.print_json(json_text(event));
@@ -63,7 +63,7 @@ void RecordPrinter::print_waiting() {
   print_ports("waiting for a start", Json{{"event", "waiting"}});
 }
 
-/// Prints a line and the ports below it. `event`: the same for programs, without the ports.
+/// Prints a line and the ports below it. `event`: the same for programs; the ports are added here.
 void RecordPrinter::print_ports(const std::string& line, const Json& event) {
   ports_printed_ = true;
   console_.print(harmless(fmt::format("{}\n  {}\n", line, ports_text(session_))));
@@ -71,8 +71,8 @@ void RecordPrinter::print_ports(const std::string& line, const Json& event) {
   console_.flush();
 }
 
-/// Prints the oldest take's file once, as soon as it is begun.
-/// The file is begun by the disk's thread, so its name is known some time after the take's start.
+/// Prints the file of the oldest take once. The disk's thread begins the file, so its name is known
+/// only some time after the take has started.
 void RecordPrinter::print_start() {
   if (session_.takes().empty() || started_.lock() == session_.takes().front()) return;
   const DiskStatus disk = session_.takes().front()->disk.status();
@@ -95,10 +95,10 @@ void RecordPrinter::print(const ReceivedMark& received) {
   console_.flush();
 }
 
-/// Prints events ten times a second, and the status and the table once a second.
+/// Prints events ten times a second. The status and the table follow once a second.
 void RecordPrinter::look(const std::optional<std::string>& typed) {
   print_start();
-  // The first output is always that of the ports.
+  // The lines about ports always come first.
   if (!ports_printed_) return;
   for (const ReceivedMark& mark : session_.take_marks()) print(mark);
   const HostTime now = session_.now();
@@ -106,12 +106,12 @@ void RecordPrinter::look(const std::optional<std::string>& typed) {
   next_look_ = now + 100ms;
   print_events();
   const bool second = now >= next_second_;
-  // A text that is being typed is shown at once.
+  // While the user types a text, the table is drawn at once.
   if (!second && !(console_.shows() && typed)) return;
   const RecordStatus status = status_now(session_);
   if (second) {
     next_second_ = now + 1s;
-    // Without a take nothing is written, so there is no forecast.
+    // Outside a take nothing is written, so the disk needs no forecast.
     if (session_.recording()) look_at_disk(status);
     print_unseen(status.lab);
     print_silent(status.lab);
@@ -131,8 +131,8 @@ void RecordPrinter::print_events() {
   if (NodeReceiver* nodes = session_.nodes()) print_node_events(*nodes);
 }
 
-/// Silent and returned nodes are left out of the lines: print_silent() prints them for all devices
-/// alike.
+/// Prints events of nodes. print_silent() reports nodes that fall silent or return, since it does
+/// so for all devices.
 void RecordPrinter::print_node_events(NodeReceiver& nodes) {
   using Kind = NodeEvent::Kind;
   for (const NodeEvent& event : nodes.take_node_events()) {
@@ -148,9 +148,10 @@ void RecordPrinter::print_node_events(NodeReceiver& nodes) {
   }
 }
 
-/// Prints lost messages at once, and then each time the number has doubled.
+/// Prints the number of lost messages at the first loss, and again each time the number has
+/// doubled.
 void RecordPrinter::print_dropped(std::uint64_t dropped) {
-  // Doubling keeps a long fault from printing thousands of lines.
+  // Without this rule a long fault would print thousands of lines.
   if (dropped == 0 || dropped < 2 * dropped_) return;
   dropped_ = dropped;
   complain(fmt::format("{} messages lost: memory is full, and the disk does not accept data",
@@ -159,10 +160,10 @@ void RecordPrinter::print_dropped(std::uint64_t dropped) {
   console_.ring();
 }
 
-/// Updates the forecast of the disk, ends the take if the disk is full, and warns before. Bytes
-/// that still wait in memory count as written.
+/// Updates the forecast of the disk. Warns before the disk is full, and ends the take when it is
+/// full. Bytes that still wait in memory count as written.
 void RecordPrinter::look_at_disk(const RecordStatus& status) {
-  // A new take begins with a new forecast and new counts.
+  // Each take has a new forecast and new counts.
   if (forecast_of_.lock() != session_.takes().back()) {
     forecast_of_ = session_.takes().back();
     forecast_ = {};
@@ -171,10 +172,11 @@ void RecordPrinter::look_at_disk(const RecordStatus& status) {
   const DiskStatus& disk = *status.disk;
   print_dropped(disk.dropped);
   if (!disk.free_bytes) return;
-  // Bytes that wait in memory will be on the disk soon, so they are taken from its free space.
+  // Bytes that wait in memory will soon be on the disk, so they are subtracted from the free space.
   const std::uint64_t to_write = std::min(session_.waiting_bytes(), *disk.free_bytes);
   forecast_.look(status.lab.now, disk.bytes + disk.waiting_bytes, *disk.free_bytes - to_write);
-  // exchange() makes it a single message: the disk stays full until the take has ended.
+  // The disk stays full until the take has ended; exchange() makes sure that the message is printed
+  // once.
   if (forecast_.full() && !std::exchange(disk_full_, true)) {
     complain(fmt::format("the disk has {} MiB left; the take ends now and is complete",
                          *forecast_.free() >> 20U),
@@ -187,7 +189,7 @@ void RecordPrinter::look_at_disk(const RecordStatus& status) {
   }
 }
 
-/// Prints devices that have sent nothing, once, 5 s after the start.
+/// Prints the devices that have sent nothing, once, 5 s after the start.
 void RecordPrinter::print_unseen(const LabStatus& status) {
   if (status.now - status.begun < 5s || std::exchange(unseen_printed_, true)) return;
   for (const std::string& line : unseen_lines(session_.lab(), status)) {
@@ -195,7 +197,7 @@ void RecordPrinter::print_unseen(const LabStatus& status) {
   }
 }
 
-/// Prints each sender that falls silent, with a bell, or comes back.
+/// Prints each sender that falls silent, with a bell, and each sender that returns.
 void RecordPrinter::print_silent(const LabStatus& status) {
   for (const auto& [stream, silent] : silent_senders_.changes(status)) {
     if (silent) console_.ring();
@@ -211,10 +213,10 @@ void RecordPrinter::print_silent(const LabStatus& status) {
 
 void RecordPrinter::print(const Finding& finding) {
   std::string lines = finding_lines({finding}, console_);
-  // finding_lines() ends with a line end of its own.
-  lines.pop_back();  // complain() adds the line end
+  // complain() adds a line end, so the one from finding_lines() is removed.
+  lines.pop_back();
   console_.complain(lines);
-  // A warning changes the exit code of the take.
+  // A warning makes the exit code of the take 1.
   warned_ = warned_ || finding.severity != Severity::note;
   console_.print_json(json_text(Json{{"event", "finding"},
                                      {"severity", std::string(to_string(finding.severity))},
@@ -231,7 +233,7 @@ void RecordPrinter::print(const HostClockEvent& event) {
 void RecordPrinter::print(const PartFailure& failure) {
   const std::string why = to_string(failure.why);
   complain(
-      // Without a next file the part is kept in memory.
+      // If no further file can be begun, the data stays in memory.
       why + ": " +
           (failure.next.empty() ? "kept in memory and tried again"
                                 : "continues in " + failure.next),
@@ -257,7 +259,7 @@ void RecordPrinter::print_slow_end(std::uint64_t waiting_bytes, bool ends) {
            Json{{"event", "end_waits"}, {"waiting_bytes", waiting_bytes}});
 }
 
-/// The event "status" for programs.
+/// Prints the event "status" for programs.
 void RecordPrinter::print_status_json(const RecordStatus& status) {
   Json event{{"event", "status"}};
   event.update(json_of(status, session_));
@@ -267,12 +269,12 @@ void RecordPrinter::print_status_json(const RecordStatus& status) {
   console_.print_json(json_text(event));
 }
 
-/// The line about the disk, or what recording waits for.
+/// The line about the disk. Without a take: the line that says what recording waits for.
 std::string RecordPrinter::disk_line() const {
   if (session_.takes().empty()) return "waiting for a start";
   const DiskStatus oldest = session_.takes().front()->disk.status();
   if (session_.takes().front()->end && !oldest.finished && !oldest.paths.empty()) {
-    // The end of the last take may be written while the next one is recorded.
+    // While the next take is waited for, the end of the last one may still be written.
     return "disk  writing the end of " + oldest.paths.back();
   }
   const DiskStatus disk = session_.takes().back()->disk.status();
@@ -280,28 +282,28 @@ std::string RecordPrinter::disk_line() const {
   return disk_text(forecast_, disk.bytes, disk.paths.back());
 }
 
-/// Draws the table with the disk's line and the line of keys below it.
+/// Draws the table and below it two lines: about the disk and about the keys.
 void RecordPrinter::show(const RecordStatus& status, const std::optional<std::string>& typed) {
   if (!console_.shows()) return;
-  constexpr std::size_t below = 2;  // the disk's line and the line of keys
+  constexpr std::size_t below = 2;  // the lines about the disk and the keys
   std::vector<std::pair<std::string, Colour>> lines;
-  // The subtraction can't go below zero on a terminal of one line.
+  // On a terminal of one line the difference would be negative without std::min.
   const std::size_t rows = console_.rows() - std::min(below, console_.rows());
   for (const TableLine& line :
        fitted(lab_table(session_.lab(), status.lab, console_.columns()), rows)) {
     lines.emplace_back(harmless(line.text), line.bad ? Colour::bad : Colour::plain);
   }
-  // Ten minutes is the first step of the warnings.
+  // The line turns red at ten minutes, together with the first warning.
   const auto left = forecast_.minutes_left();
   lines.emplace_back(harmless(disk_line()), left && *left < 10 ? Colour::bad : Colour::plain);
   lines.emplace_back(typed ? "text: " + harmless(*typed) : mark_keys_text, Colour::plain);
   console_.show(lines);
 }
 
-/// Prints the result of a take, or that it was given up before it had a file.
+/// Prints the result of a take, or that the take ended without a file.
 RecordStatus RecordPrinter::print_end() {
   print_start();
-  // Events that came with the last turn belong to this take.
+  // Events that have come until now belong to this take.
   print_events();
   RecordStatus status = status_at_end(session_);
   const DiskStatus& disk = *status.disk;

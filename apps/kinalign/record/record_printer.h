@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints what happens in a recording session: lines and a table on a terminal, JSON for programs.
+// Prints what happens while `record` runs: lines and a table on a terminal, JSON for programs.
 #pragma once
 
 #include "apps/cli/console.h"
@@ -15,31 +15,33 @@
 
 namespace kinalign {
 
-/// Runs in the thread of the session. Lines are printed once for each change; the table and the
-/// JSON status once a second. Weak pointers tell takes apart without keeping them.
+/// Prints what happens in a session, in the session's thread. Each change gives one line; the table
+/// and the JSON status follow once a second. The weak pointers only tell whether a take is still
+/// the same; they do not keep it in memory.
 class RecordPrinter {
  public:
   RecordPrinter(RecordingSession& session, Console& console);
 
-  /// The ports are open, and the session waits for a start.
+  /// Prints that the ports are open and the session waits for a start.
   void print_waiting();
-  /// Called after each turn. Prints marks and a take's new file at once, and everything else ten
-  /// times a second. `typed`: the text that is being typed.
+  /// Called after each turn of the session. Prints marks and the file of a new take at once, other
+  /// events ten times a second. `typed`: the text that the user is typing.
   void look(const std::optional<std::string>& typed);
-  /// The disk failed, or does not begin a take's file.
+  /// Prints that writing to the disk failed, or that the file of a take could not be begun.
   void print(const PartFailure& failure);
-  /// The disk does not begin a take's file.
+  /// Prints that the disk takes long to begin the file of a take.
   void print_slow_begin();
-  /// The disk refuses the end of a take. `ends`: no further take will come, so a single Ctrl-C
-  /// gives it up.
+  /// Prints that the disk refuses the end of a take. `ends`: no further take comes, so one Ctrl-C
+  /// stops the waiting.
   void print_refused_end(const Error& why, bool ends);
-  /// The disk neither takes nor refuses the end of a take; `waiting_bytes` wait.
+  /// Prints that the disk does not answer while the end of a take is written; `waiting_bytes` are
+  /// not written yet.
   void print_slow_end(std::uint64_t waiting_bytes, bool ends);
-  /// The oldest take is written or given up. Returns its status.
+  /// Prints the end of the oldest take, which was written or given up. Returns its status.
   RecordStatus print_end();
 
-  /// The disk has only its reserve left: the take has to end.
-  /// Never reset: a full disk ends the recording, not only the take.
+  /// True once the disk has only its reserve left. It stays true, because a full disk ends the
+  /// whole recording and not only the take.
   bool disk_full() const { return disk_full_; }
   /// True if a warning about unusable data was printed since the last call.
   bool take_warned() { return std::exchange(warned_, false); }
@@ -65,8 +67,9 @@ class RecordPrinter {
   Console& console_;
   NodeNames names_;
   std::weak_ptr<const SessionTake> started_;      // the take whose file was printed last
-  std::weak_ptr<const SessionTake> forecast_of_;  // dropped_ and forecast_ belong to this take
-  std::uint64_t dropped_ = 0;                     // messages lost as printed last
+  std::weak_ptr<const SessionTake> forecast_of_;  // the take of dropped_ and forecast_
+  // the number of lost messages that was printed last
+  std::uint64_t dropped_ = 0;
   DiskForecast forecast_;
   ClockEventLines clock_lines_;
   SilentSenders silent_senders_;

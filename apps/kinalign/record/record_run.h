@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a recording session: takes are begun, recorded and finished one after another. The next take
-// may begin while the disk still writes the end of the last.
+// Runs a recording session, in which takes are recorded one after another. The next take may begin
+// while the end of the last one is still being written.
 #pragma once
 
 #include "apps/kinalign/record/mark_keys.h"
@@ -13,14 +13,14 @@
 
 namespace kinalign {
 
-/// Invariant: the oldest take of the session is the one that is recorded or written here. It is
-/// released after its end was printed.
+/// Records the takes of a session. Invariant: this object works on the session's oldest take, and
+/// releases it after printing its end.
 class RecordRun {
  public:
   RecordRun(const RecordJob& job, Call& call, RecordingSession& session)
       : job_(job), call_(call), session_(session), printer_(session, call.console) {}
 
-  /// Records one take, or with --repeat one after another, until the end. Returns the worst exit
+  /// Records one take, or with --repeat several, until the recording ends. Returns the worst exit
   /// code.
   int operator()();
 
@@ -33,7 +33,7 @@ class RecordRun {
   void record_until_end(SessionTake& take);
   void write_rest(SessionTake& take);
   int exit_code(const RecordStatus& status);
-  // Ends the process without destructors; see the definition.
+  // Ends the process without destructors; the definition gives the reason.
   [[noreturn]] void leave();
   void print_takes(std::size_t takes, std::vector<std::string> faulty, int worst);
 
@@ -43,9 +43,9 @@ class RecordRun {
   RecordPrinter printer_;
   Keyboard keyboard_;
   MarkKeys keys_;
-  // True after the first Ctrl-C, or after the only take. No new take begins then.
+  // True after the first Ctrl-C or, without --repeat, after the take. No new take begins then.
   bool ends_ = false;
-  bool pressed_again_ = false;  // another Ctrl-C after the one that ended recording
+  bool pressed_again_ = false;  // true: Ctrl-C came again after recording had ended
 };
 
 }  // namespace kinalign

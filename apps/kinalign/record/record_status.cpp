@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 RecordStatus status_now(RecordingSession& session) {
   RecordStatus status{session.status(), std::nullopt, {}};
-  // The newest take is the one that is recorded now.
+  // The newest take is the one that is being recorded.
   if (!session.takes().empty()) status.disk = session.takes().back()->disk.status();
   status.missing = missing(session.lab(), status.lab);
   return status;
@@ -32,7 +32,7 @@ RecordStatus status_at_end(const RecordingSession& session) {
 
 Json json_of(const RecordStatus& status, const RecordingSession& session) {
   Json json{{"missing", status.missing}, {"streams", Json::array()}};
-  // Without a take there is no disk to report.
+  // Without a take no file is written, so there is no status of the disk.
   if (status.disk) {
     json["bytes"] = status.disk->bytes;
     json["dropped"] = status.disk->dropped;
@@ -44,7 +44,7 @@ Json json_of(const RecordStatus& status, const RecordingSession& session) {
     json["ports"][name] = Json::parse(to_json(CountedPort{name, counts}));
   }
   for (const MarkPort& port : session.mark_ports()) {
-    // The ports of marks have the counts of other ports, and some of their own.
+    // The ports for marks have the counts of other ports and some more.
     const MarkPortCounts& counts = port.counts();
     json["ports"][port.name()].update(Json{
         {"marks", counts.marks}, {"repeats", counts.repeats}, {"refused_for", counts.refused}});

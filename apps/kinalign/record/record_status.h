@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All that `record` shows of a session at one moment, for its printers.
+// The state of a session at one moment, as `record` prints it.
 #pragma once
 
 #include "apps/kinalign/text/record_text.h"
@@ -14,23 +14,25 @@
 
 namespace kinalign {
 
-/// A copy of the lab's and the disk's status, so a table and a JSON object of one second show the
-/// same numbers.
+/// Copies of the lab's and the disk's status. They make sure that the table and the JSON of one
+/// second show the same numbers.
 struct RecordStatus {
   LabStatus lab;
-  std::optional<DiskStatus> disk;    // absent if no take is in progress or being finished
-  std::vector<std::string> missing;  // required devices and nodes: silent; of a take: never seen
+  std::optional<DiskStatus> disk;  // empty if no take is being recorded or written
+  // required devices and nodes that are silent now, or at a take's end have never sent
+  std::vector<std::string> missing;
 };
 
-/// The present status, with the disk of the newest take.
+/// The present status, with the disk's status for the newest take.
 RecordStatus status_now(RecordingSession& session);
-/// The status at the end of the oldest take. Later data belongs to the next take.
+/// The status at the end of the oldest take. Later data is not counted, since it belongs to the
+/// next take.
 RecordStatus status_at_end(const RecordingSession& session);
 
-/// The members that the events "status" and "stopped" have in common.
+/// The JSON members that the events "status" and "stopped" share.
 nlohmann::ordered_json json_of(const RecordStatus& status, const RecordingSession& session);
 
-/// The lines about an ended take: files, losses, senders and ports.
+/// The lines about an ended take: its files, losses, senders and ports.
 std::string end_text(const RecordStatus& status, const RecordingSession& session);
 
 }  // namespace kinalign

@@ -9,7 +9,7 @@ namespace kinalign {
 
 namespace {
 
-/// True for a sender of few messages if another sender of the same stream has more.
+/// True if a sender has sent few messages and another sender of the same stream has sent more.
 bool may_be_unknown(const StreamStatus& stream, const std::vector<StreamStatus>& all) {
   if (stream.counts.messages >= Senders::little) return false;
   return std::any_of(all.begin(), all.end(), [&](const StreamStatus& other) {
@@ -20,11 +20,11 @@ bool may_be_unknown(const StreamStatus& stream, const std::vector<StreamStatus>&
 }  // namespace
 
 std::vector<SilentSenders::Change> SilentSenders::changes(const LabStatus& status) {
-  // A sender that reconnects has several entries. Only the newest one can be silent.
+  // A sender that reconnects has several entries. Only the newest entry counts.
   const std::vector<StreamStatus> newest = newest_of_each(status.streams);
   std::vector<Change> changes;
   for (const StreamStatus& stream : newest) {
-    // The name alone is not enough: two senders of one device are told apart by their addresses.
+    // Two senders of one device have the same name, so the address is part of the key.
     const std::string key = name_of(stream) + " from " + stream.sender;
     const bool silent = is_silent(stream, status.now);
     if (silent == silent_.contains(key) || (silent && may_be_unknown(stream, newest))) continue;

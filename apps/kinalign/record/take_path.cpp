@@ -11,8 +11,8 @@ namespace kinalign {
 
 namespace {
 
-/// The text with every character that may not stand in a file's name replaced by '-'.
-/// Subject and action may hold spaces, letters of any language and '/'.
+/// Replaces each character that is not allowed in a file's name by '-'. Subject and action may
+/// contain spaces, '/' and letters of any language.
 std::string in_name(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -22,17 +22,17 @@ std::string in_name(const std::string& text) {
   return out;
 }
 
-/// The names of takes that have further parts: "take_01" for "take_01.part2.mcap". Empty if the
+/// The names of takes that have several parts: "take_01.part2.mcap" gives "take_01". Empty if the
 /// folder can't be listed.
 std::set<std::string> names_with_parts(const std::string& folder) {
   std::set<std::string> names;
-  // A folder that does not exist has no names that are taken.
+  // In a folder that does not exist all names are free.
   std::error_code fault;
   std::filesystem::directory_iterator entry(folder, fault);
   for (; !fault && entry != std::filesystem::directory_iterator(); entry.increment(fault)) {
     const std::string name = entry->path().filename().string();
     const std::size_t part = name.find(".part");
-    // A part may be left although its first file was moved away. Its name must not be used again.
+    // A part may remain after its first file was moved away. Its name must not be used again.
     if (part != std::string::npos && name.ends_with(".mcap")) names.insert(name.substr(0, part));
   }
   return names;
@@ -49,10 +49,10 @@ std::string free_take_path(const std::string& folder, const std::string& subject
   if (name.empty()) name = "take_";
   const std::set<std::string> taken = names_with_parts(folder);
   for (int run = 1;; ++run) {
-    // Two digits sort well; numbers above 99 have more.
+    // With two digits, names sort well; numbers above 99 have more digits.
     const std::string numbered = fmt::format("{}{:02}", name, run);
     std::string path = fmt::format("{}/{}.mcap", folder, numbered);
-    // lstat() also finds a link that leads nowhere: its name is taken.
+    // lstat() also finds a link without a target, whose name is not free either.
     struct stat status {};
     if (::lstat(path.c_str(), &status) != 0 && !taken.contains(numbered)) return path;
   }
