@@ -19,12 +19,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A warning that concerns more joints states their number instead of their names.
+/// If a warning concerns more joints, it states their number in place of their names.
 constexpr std::size_t most_named = 4;
 
-/// Runs `denoise --live`: puts the Kinect's frames on the model's grid and answers each frame once
-/// its later frames have come.
-/// Invariant: made_ >= answered_. The difference is at most the look-ahead.
+/// Runs `denoise --live`. The Kinect's frames are brought to the model's frame rate, and each of
+/// these frames is answered once the later frames that it needs have come. Invariant: made_ >=
+/// answered_; the difference is at most the look-ahead.
 class LiveDenoiseRun {
  public:
   LiveDenoiseRun(Denoiser& denoiser, const LiveJob& job, LiveSession& session)
@@ -36,37 +36,41 @@ class LiveDenoiseRun {
         unseen_(model_.layout.inputs.size()) {}
 
   void begin() {
-    // The first line of JSON has all that a program must know before the frames.
+    // The first line of JSON has everything that a program must know before the frames come.
     session_.report("waiting for the Kinect's frames", Json{{"event", "started"},
                                                             {"method", model_.facts.method},
                                                             {"rate_hz", model_.layout.rate_hz},
                                                             {"look_ahead", cleaner_.look_ahead()}});
   }
 
-  // Answers frames as soon as they are ready. Fails if two Kinects send and none was chosen.
+  // Takes new data and answers the frames that are ready. Fails if two Kinects send and the user
+  // chose none.
   Result<void> take(const LiveData& data) {
     for (const LiveKinectRow& row : data.rows) {
-      // The choice must come first: a second Kinect would be mixed into the first one's rows.
+      // Rows of a second Kinect must not be mixed with those of the first one, so they are skipped
+      // here.
       if (!KA_TRY(stream_.takes(row.kinect->stream))) continue;
       joints_.add(row.row, row.arrival);
-      // Frames are made after every row, so the arrival of this row is the one that they needed.
+      // Frames are made after each row, so that the latency of a frame counts from the arrival of
+      // its last row.
       KA_TRY(advance(row.arrival));
     }
-    // A frame may also become ready because time passed: a Kinect that is silent is not waited for.
+    // Frames may also become ready as time passes: after a while a silent Kinect is no longer
+    // waited for.
     if (session_.stream().now()) KA_TRY(advance(*session_.stream().now()));
     return check_live_frames(answered_);
   }
 
-  // The status that a person reads: what is waited for, or frames and latency.
+  // The status for people: what the run waits for, or the number of frames and the latency.
   std::string status() const {
-    // begin() is absent before the first row.
+    // Before the Kinect's first row begin() is empty.
     if (!joints_.begin()) return "waiting for the Kinect's frames";
     return fmt::format("{} frames; {}", answered_, session_.latency_text());
   }
 
-  // Answers the rest of the frames after the stream's end, without latencies.
+  // Answers the remaining frames after the end of the stream. They get no latency.
   Result<void> finish() {
-    // The rest needs no arrival, so it has no latency.
+    // The remaining frames wait for no arrival, so they have no latency.
     while (joints_.begin() && time_of(made_) <= *joints_.newest()) {
       KA_TRY(make_frame(std::nullopt));
     }
@@ -74,17 +78,17 @@ class LiveDenoiseRun {
     return {};
   }
 
-  // The whole answer as a clip and as JSON. Frames after the Kinect's last row are left out, as for
-  // a file.
+  // The whole result, as a clip and as JSON. Frames after the Kinect's last row are left out, as in
+  // a run on a file.
   Result<Json> answer(Clip& clip) const {
     if (answered_ == 0) return no_live_frames(status());
     const std::size_t frames = answered_ - std::min(answered_ - 1, behind_newest_);
-    // The cleaner keeps all answers until now, before bones get their length. Here they get one
-    // length over the whole run.
+    // whole() returns all answers before their bones were set to a fixed length. Here each bone
+    // gets one length for the whole run.
     std::vector<float> whole = cleaner_.whole();
     whole.resize(whole.size() / answered_ * frames);
     clip = KA_TRY(skeleton(whole, *joints_.begin()));
-    // The maximum keeps a run without joints from dividing by zero.
+    // In a run without joints the sum is 0; the maximum avoids a division by zero.
     const double all =
         static_cast<double>(std::max<std::size_t>(seen_[0] + seen_[1] + seen_[2], 1));
     Json missing = Json::object();
@@ -107,9 +111,9 @@ class LiveDenoiseRun {
   }
 
  private:
-  // The stamp of a frame of the grid, which begins at the Kinect's first row.
+  // The time of a frame. Frames have the model's rate and begin at the Kinect's first row.
   Time time_of(std::size_t frame) const {
-    // The time is computed from the first frame, so rounding does not add up.
+    // The time is computed from the first frame, so that rounding errors do not add up.
     const double ns = static_cast<double>(frame) * 1e9 / model_.layout.rate_hz;
     return *joints_.begin() + Duration(std::llround(ns));
   }
@@ -119,7 +123,8 @@ class LiveDenoiseRun {
                               model_.layout.rate_hz);
   }
 
-  // Makes every frame that is due and whose row has come. `now`: on the axis of the stamps.
+  // Makes every frame that is due and whose rows have come. `now`: the present time by the clock of
+  // the stamps.
   Result<void> advance(Time now) {
     while (joints_.begin() && time_of(made_) <= now && joints_.is_ready(time_of(made_), now)) {
       KA_TRY(make_frame(now));
@@ -130,18 +135,18 @@ class LiveDenoiseRun {
   Result<void> make_frame(std::optional<Time> needed) {
     const JointFrames frame = joints_.frame(time_of(made_++));
     count(frame);
-    // The cleaner answers the frame that lies look_ahead() frames back.
+    // The cleaner answers the frame that is look_ahead() frames older than this one.
     if (const auto joints = cleaner_.step(frame)) return take_answer(*joints, needed);
     return {};
   }
 
-  /// Counts missing joints. Frames after the Kinect's newest row count only once a further row has
-  /// come: a file would end there.
+  /// Counts missing joints. Frames after the Kinect's newest row are counted only once a further
+  /// row has come, because a recorded file would end at the newest row.
   void count(const JointFrames& frame) {
     ++behind_newest_;
-    // Such a frame may still turn out to be inside of the recording.
+    // If a further row comes, this frame is counted then.
     if (time_of(made_ - 1) > *joints_.newest()) return;
-    // The frames in between had no row of their own, so every joint was missing in them.
+    // Between two rows all joints were missing in the frames that are counted now.
     const std::size_t lost = behind_newest_ - 1;
     behind_newest_ = 0;
     for (std::size_t j = 0; j < unseen_.size(); ++j) {
@@ -153,9 +158,9 @@ class LiveDenoiseRun {
     }
   }
 
-  // Prints an answered frame, and the skeleton before the first one.
+  // Prints an answered frame. Before the first frame the skeleton is printed.
   Result<void> take_answer(const std::vector<float>& joints, std::optional<Time> needed) {
-    // The skeleton of one frame has the bone lengths of that moment.
+    // The bones of the skeleton have their lengths in this frame.
     const Clip one = KA_TRY(skeleton(joints, time_of(answered_)));
     if (answered_ == 0) {
       session_.report("", Json{{"event", "skeleton"},
@@ -175,18 +180,18 @@ class LiveDenoiseRun {
   LiveChoice stream_;
   LiveJoints joints_;
   LiveCleaner cleaner_;
-  std::size_t made_ = 0, answered_ = 0;  // made_: frames given to the cleaner; answered_: frames it
-                                         // answered
-  std::size_t behind_newest_ = 0;        // frames made after the Kinect's newest row
-  std::array<std::size_t, 3> seen_{};    // joints of all frames, by Tracking
-  std::vector<Unseen> unseen_;           // [Jin] for each input joint
+  // the number of frames given to the cleaner, and of those that it has answered
+  std::size_t made_ = 0, answered_ = 0;
+  std::size_t behind_newest_ = 0;      // frames made after the Kinect's newest row
+  std::array<std::size_t, 3> seen_{};  // number of joints in all frames, by Tracking
+  std::vector<Unseen> unseen_;         // one element for each input joint
 };
 
 }  // namespace
 
 std::vector<std::string> missing_warnings(const Json& long_missing) {
   std::map<std::string, std::vector<std::string>> joints;
-  // Joints that vanish together, such as a whole leg behind a table, get one line.
+  // Joints that were missing for the same time, such as a leg behind a table, get one line.
   for (const auto& [joint, seconds] : long_missing.items()) {
     joints[fmt::format("{:.1f}", seconds.get<double>())].push_back(harmless(joint));
   }

@@ -16,10 +16,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Runs `fuse --live`: calibrates the nodes by a T-pose, then gives frames of nodes and Kinect to
-/// the fuser.
-/// Each frame passes three stages: made (worn_), given to the fuser (pending_), answered (poses_
-/// and answered_). pending_ has exactly the frames that the fuser has not answered.
+/// Runs `fuse --live`: calibrates the nodes with a T-pose, then passes frames of the nodes and the
+/// Kinect to the fuser. A frame is first made (worn_), then given to the fuser (pending_), then
+/// answered (poses_ and answered_). Invariant: pending_ has exactly the frames that the fuser has
+/// not answered.
 class LiveFuseRun {
  public:
   LiveFuseRun(Fuser& fuser, const LiveJob& job, LiveSession& session)
@@ -42,21 +42,22 @@ class LiveFuseRun {
                          {"parents", model_.body.skeleton.parents}});
   }
 
-  // Takes marks, Kinect rows and samples of nodes, and answers the frames that are ready.
+  // Takes marks, rows of the Kinect and samples of nodes, and answers the frames that are ready.
   Result<void> take(const LiveData& data) {
-    // Marks come first: a mark calibrates with samples that are there already.
+    // Marks come first, because a T-pose is calibrated with samples that have already come.
     for (const LiveMark& mark : data.marks) report_.take(mark);
     for (const LiveKinectRow& row : data.rows) {
       if (KA_TRY(stream_.takes(row.kinect->stream))) joints_.add(row.row, row.arrival);
     }
     for (const LiveNodeSample& sample : data.samples) KA_TRY(report_.add(sample));
-    // All samples of the piece are in, so one call answers all of its frames in one run of the
-    // network.
+    // All samples of this call are stored before, so that the network runs once for all frames that
+    // are ready.
     if (session_.stream().now()) advance(*session_.stream().now());
     return check_live_frames(poses_.size());
   }
 
-  // The status that a person reads: what is waited for, or frames, latency and nodes.
+  // The status for people: what the run waits for, or the number of frames, the latency and the
+  // nodes.
   std::string status() const {
     std::string waits = report_.waits_for();
     if (!waits.empty()) return waits;
@@ -66,11 +67,11 @@ class LiveFuseRun {
                        report_.names().text());
   }
 
-  // Answers the rest of the frames after the stream's end, without latencies.
+  // Answers the remaining frames after the end of the stream. They get no latency.
   Result<void> finish() {
     std::vector<LiveWornFrame> ready;
     std::vector<FusedFramePose> answered;
-    // The last frames are made before the fuser is finished, which then answers all of them.
+    // The last frames are made first; then the fuser is finished and answers all of them.
     worn_.finish(ready);
     for (const LiveWornFrame& frame : ready) take_frame(frame);
     fuser_.finish(answered);
@@ -78,29 +79,28 @@ class LiveFuseRun {
     return {};
   }
 
-  // The whole answer as a clip and as JSON.
-  // The length of the file is that of a run on a recorded file: it ends with the root's last
-  // sample.
+  // The whole result, as a clip and as JSON. Frames after the last sample of the root's node are
+  // left out, as in a run on a file.
   Result<Json> answer(Clip& clip) {
     if (poses_.empty()) return no_live_frames(status());
     std::vector<Turn> rotations;
     std::vector<Eigen::Quaternionf> root;
     for (std::size_t t = 0; t < poses_.size(); ++t) {
       if (answered_[t].stamp > *worn_.nodes().newest_of_root())
-        break;  // a file's frames end there too
+        break;  // a run on a file ends here, too
       report_.count(answered_[t].valid);
       rotations.insert(rotations.end(), poses_[t].rotations.begin(), poses_[t].rotations.end());
       root.push_back(poses_[t].root);
     }
     clip = {model_.body.skeleton,
-            // Every frame was answered with the same body, so the clip has one skeleton.
+            // All frames have the same body, so the clip has one skeleton.
             clip_frames(model_.body, rotations, root, nodes_.rate_hz, answered_.front().stamp)};
     for (std::size_t t = 0; t < root.size(); ++t) put_place(poses_[t], t, clip.frames);
     return about(root.size());
   }
 
  private:
-  // Puts the root's place into frame t; joint 0 is the root.
+  // Writes the root's position into frame t. The root is joint 0.
   void put_place(const FusedFramePose& pose, std::size_t t, ClipFrames& frames) const {
     vec3(frames.local_positions, t * model_.body.skeleton.joints()) = pose.place.cast<double>();
   }
@@ -110,14 +110,16 @@ class LiveFuseRun {
   void advance(Time now) {
     std::vector<LiveWornFrame> ready;
     std::vector<FusedFramePose> answered;
-    // A frame is ready if the nodes have it and the Kinect need not be waited for.
+    // A frame is ready if it no longer waits for samples of the nodes or for a row of the Kinect.
     worn_.advance(
         now, [&](Time time) { return joints_.is_ready(time, now); }, ready);
     bool waited = report_.report_t_pose();
-    // A new calibration turns each node against its bone, so headings that were found before no
-    // longer hold.
+    // A new calibration changes the orientation of each node on its bone. Headings that were found
+    // before are then wrong.
     if (waited) fuser_.begin_headings();
-    // The state before this call decides: the frames that waited for the turn are answered in it.
+    // The fuser answers frames only once it knows the rotation between the Kinect's coordinates and
+    // those of the nodes. Frames that waited for it are answered in this call, so the state before
+    // the call is needed.
     const bool was_turned = fuser_.is_turned();
     for (const LiveWornFrame& frame : ready) take_frame(frame);
     fuser_.answer(answered);
@@ -127,23 +129,24 @@ class LiveFuseRun {
     }
   }
 
-  // Gives a frame to the fuser. Frames that the fuser forgets before its first answer are forgotten
-  // here, too.
+  // Gives a frame to the fuser. If the fuser drops old frames before its first answer, they are
+  // dropped here, too.
   void take_frame(const LiveWornFrame& frame) {
     FuseInput input{frame.nodes, joints_.frame(frame.stamp)};
     for (const std::uint8_t seen : input.kinect.seen) ++seen_[seen];
     pending_.push_back({frame.stamp, frame.nodes.valid});
-    // The fuser drops its oldest waiting frame if both devices are not seen together in time.
+    // The fuser drops its oldest waiting frame if nodes and Kinect are not seen together for too
+    // long.
     const std::size_t forgotten = fuser_.forgotten();
     fuser_.add(input);
     if (fuser_.forgotten() == forgotten) return;
-    // The frames of the fuser's window stand first in pending_. The dropped frame is the next one.
+    // pending_ begins with the frames in the fuser's window. The dropped frame follows them.
     pending_.erase(pending_.begin() + static_cast<std::ptrdiff_t>(fuser_.unanswered()));
   }
 
   // Prints an answered frame and stores it for the file.
   void take_answer(FusedFramePose pose, std::optional<Time> needed) {
-    // Answers come in the order of the frames, so the first pending frame is the one.
+    // The fuser answers frames in their order, so the answer is for the first pending frame.
     Pending pending = std::move(pending_.front());
     pending_.pop_front();
     ClipFrames one = clip_frames(model_.body, pose.rotations, std::span(&pose.root, 1),
@@ -168,7 +171,7 @@ class LiveFuseRun {
              {"missing", static_cast<double>(seen_[0]) / all},
              {"inferred", static_cast<double>(seen_[1]) / all}};
     out.update(report_.about());
-    // These are the corrections at the newest answer.
+    // The JSON has the corrections of the headings at the newest answer.
     out["found_headings"] = headings_json(nodes_.nodes, fuser_.headings());
     session_.describe(out);
     return out;
@@ -181,15 +184,15 @@ class LiveFuseRun {
   const FuseModel& model_;
   const PoseLayout& nodes_;
   LiveSession& session_;
-  LiveChoice stream_;  // the Kinect's stream
+  LiveChoice stream_;  // the choice of the Kinect's stream
   LiveWorn worn_;
   LiveWornReport report_;
   LiveJoints joints_;
   LiveFuser fuser_;
-  std::deque<Pending> pending_;  // frames given to the fuser without an answer yet
+  std::deque<Pending> pending_;  // the frames that the fuser has not answered yet
   std::vector<Pending> answered_;
   std::vector<FusedFramePose> poses_;
-  std::array<std::size_t, 3> seen_{};  // joints of all frames, by Tracking
+  std::array<std::size_t, 3> seen_{};  // number of joints in all frames, by Tracking
 };
 
 }  // namespace

@@ -14,18 +14,18 @@ LiveNodeNames::LiveNodeNames(const PoseLayout& layout, std::string stream)
       stream_(std::move(stream), "one stream of inertial nodes (its stream by name)"),
       called_(layout.nodes.size()) {}
 
-/// Remembers each node's result, so that a name is looked up once. The first node at a place keeps
-/// it.
+/// Each node's result is stored, so that a name is looked up once. If two nodes state the same
+/// place, the first one keeps it.
 Result<std::optional<std::size_t>> LiveNodeNames::find(const RawChannel& node) {
   const auto known = found_.find(&node);
   if (known != found_.end()) return known->second;
-  // The entry is made before the checks, so that a node of no use is remembered as well.
+  // The result is stored before the checks, so that a node that is not used is not looked up again.
   std::optional<std::size_t>& found = found_[&node];
   if (!KA_TRY(stream_.takes(node.stream))) return found;
-  // The place comes from lab.toml. A node without one is known by its id.
+  // lab.toml states the node's place. A node without a place is called by its id.
   const std::string& name = node.place.empty() ? node.node : node.place;
   for (std::size_t n = 0; n < names_.size() && !found; ++n) {
-    // place_called() knows other words for the same place.
+    // place_called() also knows other words for a place.
     const bool is = name == names_[n] || place_called(name) == names_[n];
     if (is && called_[n].empty()) found = n;
   }

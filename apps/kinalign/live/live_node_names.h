@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Assigns the nodes of a live stream to the nodes of a model.
+// Finds for each node of a live stream the node of the model that it stands for.
 #pragma once
 
 #include "kinalign/models/pose/pose_features.h"
@@ -13,15 +13,15 @@
 
 namespace kinalign {
 
-/// The stream of a device: the chosen one, else the first that sends.
+/// The stream that is used: the one that the user chose, else the first that sends.
 class LiveChoice {
  public:
-  /// `name`: empty if none was chosen. `expected`: for the error.
+  /// `name`: the chosen stream; empty if the user chose none. `expected`: a text for the error.
   LiveChoice(std::string name, std::string expected)
       : name_(std::move(name)), expected_(std::move(expected)), is_chosen_(!name_.empty()) {}
 
-  /// True if data of that stream are used. Fails if a second stream sends and none was chosen: two
-  /// streams could be two people.
+  /// True if data of the stream `sends` is used. Fails if a second stream sends and the user chose
+  /// none: the two streams could show two people.
   Result<bool> takes(const std::string& sends) {
     if (name_.empty()) name_ = sends;
     if (is_chosen_ || sends == name_) return sends == name_;
@@ -34,31 +34,31 @@ class LiveChoice {
   bool is_chosen_;
 };
 
-/// Invariant: once a node of the layout has a sender, it keeps this sender until the end of the
-/// run.
+/// Assigns the nodes of a stream to the nodes of a model. Invariant: a node of the model keeps its
+/// first sender until the end of the run.
 class LiveNodeNames {
  public:
-  /// `stream`: the stream of the nodes; empty: the first stream that sends any.
+  /// `stream`: the stream of the nodes; empty: the first stream that sends samples of nodes.
   LiveNodeNames(const PoseLayout& layout, std::string stream);
 
-  /// The layout's node that this one is, by its place or id. Absent if the layout has no such node,
-  /// or another node has the place already. Fails if no stream was chosen and a second stream sends
-  /// nodes.
+  /// The index of the model's node with this node's place or id. Empty if the model has no such
+  /// node, or if another sender has the place. Fails if a second stream sends nodes and the user
+  /// chose none.
   Result<std::optional<std::size_t>> find(const RawChannel& node);
 
   const std::string& stream() const { return stream_.name(); }
-  /// [N] the stream's name for each node; empty: nothing came from it yet.
+  /// For each node of the model its name in the stream; empty if no sample of it has come yet.
   const std::vector<std::string>& called() const { return called_; }
-  /// "4 of 5 nodes; not yet: ankle_left".
+  /// The state in words: "4 of 5 nodes; not yet: ankle_left".
   std::string text() const;
-  /// The nodes that the model does not use: "imu 7".
+  /// The nodes in the stream that the model does not use: "imu 7".
   const std::vector<std::string>& others() const { return others_; }
 
  private:
-  std::vector<std::string> names_;  // [N] the layout's names
+  std::vector<std::string> names_;  // the names of the model's nodes
   LiveChoice stream_;
   std::vector<std::string> called_, others_;
-  // The key is the channel's address, which is valid as long as the stream object.
+  // The key is the address of the channel. It stays valid as long as the stream object lives.
   std::map<const RawChannel*, std::optional<std::size_t>> found_;
 };
 

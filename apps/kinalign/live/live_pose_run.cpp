@@ -12,8 +12,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Runs `pose --live`: calibrates the nodes by a T-pose, then solves frame by frame.
-/// LivePose solves; this class connects it with the stream, the reports and the final clip.
+/// Runs `pose --live`: calibrates the nodes with a T-pose, then computes the pose of each frame.
+/// LivePose does the computation; this class connects it with the stream, the reports and the final
+/// clip.
 class LivePoseRun {
  public:
   LivePoseRun(const PoseSolver& solver, const LiveJob& job, LiveSession& session)
@@ -34,18 +35,21 @@ class LivePoseRun {
 
   // Takes marks and samples, and answers the frames that are ready.
   Result<void> take(const LiveData& data) {
-    // A mark in the same piece must calibrate before the samples that follow it.
+    // Marks come first, because a T-pose must be calibrated before the samples that follow it are
+    // used.
     for (const LiveMark& mark : data.marks) report_.take(mark);
     for (const LiveNodeSample& sample : data.samples) {
-      // Only samples of the model's nodes can complete a frame.
+      // add() returns true only for a node of the model. Only such a sample can complete a frame.
       if (KA_TRY(report_.add(sample))) advance(sample.arrival);
     }
-    // Time that passes can make a frame ready although a node is silent.
+    // Frames may also become ready as time passes: after a while a silent node is no longer waited
+    // for.
     if (session_.stream().now()) advance(*session_.stream().now());
     return check_live_frames(frames_.size());
   }
 
-  // The status that a person reads: what is waited for, or frames, latency and nodes.
+  // The status for people: what the run waits for, or the number of frames, the latency and the
+  // nodes.
   std::string status() const {
     std::string waits = report_.waits_for();
     if (!waits.empty()) return waits;
@@ -53,7 +57,7 @@ class LivePoseRun {
                        report_.names().text());
   }
 
-  // Answers the rest of the frames after the stream's end, without latencies.
+  // Answers the remaining frames after the end of the stream. They get no latency.
   Result<void> finish() {
     std::vector<LivePoseFrame> answered;
     pose_.finish(answered);
@@ -61,16 +65,15 @@ class LivePoseRun {
     return {};
   }
 
-  // The whole answer as a clip and as JSON.
-  // Frames after the root's last sample were answered, but a run on the recorded file would not
-  // have them.
+  // The whole result, as a clip and as JSON. Frames after the last sample of the root's node were
+  // answered, but are left out, as in a run on a file.
   Result<Json> answer(Clip& clip) {
     if (frames_.empty()) return no_live_frames(report_.waits_for());
     std::vector<Turn> rotations;
     std::vector<Eigen::Quaternionf> root;
     for (const LivePoseFrame& frame : frames_) {
       if (frame.stamp > *pose_.worn().nodes().newest_of_root())
-        break;  // a file's frames end there too
+        break;  // a run on a file ends here, too
       report_.count(frame.valid);
       rotations.insert(rotations.end(), frame.pose.rotations.begin(), frame.pose.rotations.end());
       root.push_back(frame.pose.root);
@@ -90,8 +93,8 @@ class LivePoseRun {
   void advance(Time now) {
     std::vector<LivePoseFrame> answered;
     pose_.advance(now, answered);
-    // The frames of this call waited for the T-pose, so their latency would be the person's and not
-    // the program's.
+    // The frames of this call may have waited for the T-pose. The person and not the program caused
+    // that delay.
     const bool waited = report_.report_t_pose();
     for (LivePoseFrame& frame : answered) {
       take_answer(std::move(frame), waited ? std::nullopt : std::optional(now));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// `pose --live`, `denoise --live` and `fuse --live`, from the connection to the last frame. Each
-// returns the JSON that the verb has for a file, with latencies; `clip` gets all frames. Each fails
-// if no server answers, if the stream is not one of record, or if no frame was answered.
+// Runs `pose --live`, `denoise --live` and `fuse --live` from the connection to the last frame.
+// Each function returns the JSON of a run on a file, with latencies added, and puts all frames into
+// `clip`. Each fails if no server answers, if the stream does not come from `record`, or if no
+// frame was answered.
 #pragma once
 
 #include "apps/kinalign/live/live_words.h"
@@ -18,13 +19,13 @@
 
 namespace kinalign {
 
-/// The frames that an answer waits for without --look-ahead.
+/// The number of later frames that an answer waits for, unless --look-ahead states another one.
 inline constexpr std::size_t usual_look_ahead = 2;
 
-/// The words of one live run. `worn` is used by pose and fuse, `kinect` by denoise and fuse.
+/// The settings of a live run. `pose` and `fuse` use `worn`; `denoise` and `fuse` use `kinect`.
 struct LiveJob {
   LiveWords words;
-  std::string nodes, kinect;  // streams; empty: the first that sends any
+  std::string nodes, kinect;  // names of streams; empty: the first that sends
   LiveWornOptions worn;
 
   std::size_t look_ahead() const {
@@ -39,16 +40,18 @@ Result<nlohmann::ordered_json> run_live_denoise(Denoiser& denoiser, const LiveJo
 Result<nlohmann::ordered_json> run_live_fuse(Fuser& fuser, const LiveJob& job, Clip& clip,
                                              Call& call);
 
-/// A joint missing for longer gets a warning, in a live run and in a file.
+/// A joint that is missing for a longer time gets a warning, in a live run and in a run on a file.
 inline constexpr double longest_unseen_s = 2.0;
-/// One warning for all joints that were missing for the same time. `long_missing`: s, by the joint.
+/// The warnings about missing joints. Joints that were missing for the same time share one warning.
+/// `long_missing`: the time in seconds for each joint.
 std::vector<std::string> missing_warnings(const nlohmann::ordered_json& long_missing);
 
-/// The corrections of the nodes' headings by the Kinect: the member "found_headings".
+/// The JSON member "found_headings": the corrections of the nodes' headings that were found with
+/// the Kinect.
 nlohmann::ordered_json headings_json(const std::vector<std::string>& nodes,
                                      std::span<const HeadingState> states);
 
-/// The last line of a live run, after those of the verb: "live     9 ms after ...".
+/// The last line of a live run, printed after the verb's own lines: "live     9 ms after ...".
 std::string live_lines(const nlohmann::ordered_json& about);
 
 }  // namespace kinalign

@@ -23,19 +23,19 @@ namespace {
 using namespace std::chrono_literals;
 using Json = nlohmann::ordered_json;
 
-constexpr Duration one_turn = 100ms;          // how long a turn waits for data
-constexpr Duration between_statuses = 500ms;  // between two updates of the status on a terminal
-constexpr Duration most_quiet = 5s;           // record sends at least one message each second
+constexpr Duration one_turn = 100ms;          // the longest wait for data in one turn
+constexpr Duration between_statuses = 500ms;  // between two prints of the status on a terminal
+constexpr Duration most_quiet = 5s;           // `record` sends at least one message each second
 
-// The recording's facts have the name of its host. The comparison tells whether both programs share
-// a clock.
+// The name of this machine. The stream states the name of its machine; if both are equal, both
+// programs use the same clock.
 std::string own_host() {
   std::array<char, 256> name{};
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
-/// Appends rows of `width` numbers: "[[0.10000,0.90000,0.00000],...]".
-/// Five decimals of a metre are a hundredth of a millimetre.
+/// Appends numbers as rows of `width` numbers: "[[0.10000,0.90000,0.00000],...]". Five decimals of
+/// a metre are a hundredth of a millimetre.
 void append_rows(std::string& out, std::span<const double> numbers, std::size_t width) {
   out += '[';
   for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -43,14 +43,14 @@ void append_rows(std::string& out, std::span<const double> numbers, std::size_t 
     if (std::isfinite(numbers[i])) {
       fmt::format_to(std::back_inserter(out), "{:.5f}", numbers[i]);
     } else {
-      out += "null";  // JSON has no NaN and no infinity
+      out += "null";  // JSON has neither NaN nor infinity
     }
     if (i % width == width - 1) out += ']';
   }
   out += ']';
 }
 
-/// The event "frame" with global positions, m, and local rotations w,x,y,z.
+/// The event "frame": global positions in m, and local rotations as quaternions w, x, y, z.
 std::string frame_json(const Skeleton& skeleton, const ClipFrames& one) {
   std::vector<double> positions(3 * skeleton.joints());
   forward_kinematics(skeleton, one, positions);
@@ -75,9 +75,9 @@ Failure no_live_frames(const std::string& waited_for) {
 }
 
 Result<LiveSession> LiveSession::open(const LiveWords& words, Call& call) {
-  // A viewer that stops reading must not stop the run.
+  // If a viewer stops reading, the run goes on.
   call.console.never_wait();
-  (void)call.console.progress();  // from here on Ctrl-C is only noted
+  (void)call.console.progress();  // from here on Ctrl-C does not end the program
   std::optional<LiveDatagrams> datagrams;
   if (!words.send.empty()) {
     datagrams = KA_TRY(LiveDatagrams::open(KA_TRY(parse_endpoint(words.send, "--send"))));
@@ -96,21 +96,22 @@ LiveSession::LiveSession(LiveConnection connection, std::optional<LiveDatagrams>
       clocks_(std::make_unique<SystemClocks>()),
       piece_came_(clocks_->raw()) {}
 
-/// The anchor of the recording links both clocks of this machine.
+/// The stream's facts link the raw clock and UTC by an anchor, one instant on both clocks.
 Time LiveSession::now() {
   const HostTime raw = clocks_->raw();
-  // On the machine of record the raw clock is the same, so the axis of the stamps can be read
-  // directly.
+  // If `record` runs on this machine, both programs have the same raw clock, so the time of the
+  // stamps can be read from it.
   if (is_own_host_.value_or(false)) {
     const ClockPair& anchor = stream_->facts()->anchor;
     return anchor.utc + (raw - anchor.raw);
   }
-  // On another machine only arrivals are known. The time on the network is therefore not part of
-  // the latency.
+  // If `record` runs on another machine, only the arrival of its messages is known here. The
+  // latency then lacks the time on the network.
   return stream_->now().value_or(Time{}) + (raw - piece_came_);
 }
 
-/// Receives one piece of the stream and hands it on. False at the stream's end.
+/// Receives one piece of the stream and passes it to `work`. Returns false at the end of the
+/// stream.
 Result<bool> LiveSession::turn(const LiveWork& work) {
   const auto came = connection_.wait(one_turn);
   piece_came_ = came == LiveConnection::Came::bytes ? clocks_->raw() : piece_came_;
@@ -118,13 +119,13 @@ Result<bool> LiveSession::turn(const LiveWork& work) {
     is_quiet_ = false;
     LiveData data;
     KA_TRY(stream_->take(connection_.bytes(), data));
-    // The host is known after the first records of the stream. It is compared once.
+    // The first records of the stream name its machine. The name is compared once.
     if (!is_own_host_ && stream_->facts()) is_own_host_ = stream_->facts()->host == own_host();
     KA_TRY(work.take(data));
     call_->console.flush();
   }
   const HostTime now = clocks_->raw();
-  // A connection that was quiet is checked after every turn without data.
+  // After a turn without data, report_quiet() checks how long the connection has been silent.
   if (came == LiveConnection::Came::nothing) KA_TRY(report_quiet(now - piece_came_));
   if (now >= next_status_ && call_->console.shows()) {
     next_status_ = now + between_statuses;
@@ -134,13 +135,13 @@ Result<bool> LiveSession::turn(const LiveWork& work) {
   return came != LiveConnection::Came::end;
 }
 
-/// Warns once about a connection without data for `most_quiet`. Fails if it never sent a message of
-/// record.
+/// Warns once if the connection has sent no data for `most_quiet`. Fails if it has never sent a
+/// message of `record`.
 Result<void> LiveSession::report_quiet(Duration silence) {
   if (is_quiet_ || silence <= most_quiet) return {};
   is_quiet_ = true;
-  // A program that accepts the connection and sends nothing is not record. Waiting longer would not
-  // help.
+  // A program that accepts the connection and sends nothing is not `record`, so waiting longer
+  // would not help.
   if (!stream_->now()) {
     return Failure(
         Error{"--live", 0, "the stream of kinalign record --live-port", "no data for 5 s"});
@@ -153,7 +154,7 @@ Result<void> LiveSession::report_quiet(Duration silence) {
 Result<void> LiveSession::run(const LiveWork& work) {
   while (!interrupted() && KA_TRY(turn(work))) {
   }
-  // Ctrl-C is no break, and a stream that record closed is complete.
+  // The connection broke unless the user pressed Ctrl-C or `record` ended the stream itself.
   broke_ = !interrupted() && !stream_->closed();
   if (broke_ && !stream_->now()) {
     return Failure(Error{"--live", 0, "the stream of kinalign record --live-port",
@@ -164,13 +165,13 @@ Result<void> LiveSession::run(const LiveWork& work) {
 
 void LiveSession::report_frame(const Skeleton& skeleton, const ClipFrames& one,
                                std::optional<Time> needed) {
-  // The text is made only if someone gets it: it costs more than the rest of the report.
+  // The text takes more time than the rest of this function, so it is made only if it is used.
   if (call_->console.prints_json() || datagrams_) {
     const std::string text = frame_json(skeleton, one);
     call_->console.print_json(text);
     if (datagrams_) datagrams_->send(text);
   }
-  // A frame that waited for the person, not for the program, has no latency.
+  // A frame that waited for the person and not for the program has no latency.
   if (!needed) return;
   const Time answered = now();
   latency_.add(answered - *needed, answered - one.stamps.front());
@@ -191,7 +192,7 @@ std::string LiveSession::latency_text() const {
 }
 
 void LiveSession::describe(Json& about) const {
-  // The percentiles are over the whole run; latency_text() has those of the newest frames.
+  // These percentiles are over the whole run. latency_text() gives those of the newest frames.
   about["latency_ms"] = {{"frames", latency_.frames()},
                          {"after_arrival_p50", latency_.after_arrival_ms(0.5)},
                          {"after_arrival_p99", latency_.after_arrival_ms(0.99)},
@@ -205,7 +206,7 @@ void LiveSession::describe(Json& about) const {
   about["ended"] = broke_ ? "broke" : stream_->closed() ? "record" : "stopped";
 }
 
-/// The warnings about the stream: broken off, messages lost, samples left out.
+/// The warnings about the stream: a broken connection, lost messages, samples that were left out.
 std::vector<std::string> LiveSession::warnings() const {
   std::vector<std::string> out;
   if (broke_)

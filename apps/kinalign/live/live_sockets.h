@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sockets of a verb that works live: a connection to record, and datagrams for frames.
+// The sockets of a live verb: a TCP connection to `record`, and UDP datagrams for answered frames.
 #pragma once
 
 #include "apps/kinalign/live/live_words.h"
@@ -14,17 +14,18 @@
 
 namespace kinalign {
 
-/// The socket never blocks. Data that this program does not read in time are dropped by record and
-/// counted as lost messages.
+/// A connection to `record`; its socket never blocks. If this program reads too slowly, `record`
+/// drops messages and counts them as lost.
 class LiveConnection {
  public:
-  /// Waits at most five seconds. Fails if no server listens there.
+  /// Connects within five seconds. Fails if no server listens at the address.
   static Result<LiveConnection> open(const Endpoint& at);
 
   enum class Came { bytes, nothing, end };
-  /// Waits at most that time. A connection that broke and one that ended both give Came::end.
+  /// Waits for data for at most `patience`. Returns Came::end if the connection has broken or
+  /// ended.
   Came wait(Duration patience);
-  /// The bytes of the last wait(); valid until the next one.
+  /// The bytes that the last wait() has received. They are valid until the next wait().
   std::string_view bytes() const { return {buffer_.data(), size_}; }
 
  private:
@@ -36,8 +37,8 @@ class LiveConnection {
   std::size_t size_ = 0;
 };
 
-/// Datagrams to one address. A datagram that no program receives is lost.
-/// A lost frame is not repeated: the next one follows at once.
+/// Sends datagrams to one address. A lost frame is not sent again, because the next one follows at
+/// once.
 class LiveDatagrams {
  public:
   static Result<LiveDatagrams> open(const Endpoint& to);

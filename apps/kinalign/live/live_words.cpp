@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* own_machine = "127.0.0.1";
 
-/// The host without brackets: "[::1]" gives "::1".
+/// The host without the brackets of an IPv6 address: "[::1]" gives "::1".
 std::string without_brackets(const std::string& host) {
   const bool has = host.size() > 2 && host.front() == '[' && host.back() == ']';
   return has ? host.substr(1, host.size() - 2) : host;
@@ -19,7 +19,7 @@ std::string without_brackets(const std::string& host) {
 
 std::optional<std::uint16_t> parse_port(std::string_view text) {
   std::uint16_t port = 0;
-  // Port 0 means "any" to the system, so it can't be a destination.
+  // Port 0 is no destination, since it means "any port" to the system.
   return parse_integer(text, port) && port != 0 ? std::optional(port) : std::nullopt;
 }
 
@@ -40,7 +40,7 @@ std::vector<Field> live_flags(LiveWords& o) {
 }
 
 Result<Endpoint> parse_endpoint(const std::string& text, const std::string& flag) {
-  // The last colon separates the port, since an IPv6 address has colons of its own.
+  // The last colon separates the port, because an IPv6 address itself contains colons.
   const std::size_t colon = text.rfind(':');
   Endpoint out{own_machine, 0};
   if (colon != std::string::npos) out.host = without_brackets(text.substr(0, colon));

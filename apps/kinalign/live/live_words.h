@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The flags of verbs that work live with the data that record receives.
+// The flags of verbs that can work live, that is, on data while `record` receives it.
 #pragma once
 
 #include "apps/cli/verb.h"
@@ -12,14 +12,14 @@
 
 namespace kinalign {
 
-/// The values of the flags. The other two flags are legal only with `live`.
+/// The values of the flags. `send` and `look_ahead` are allowed only together with `live`.
 struct LiveWords {
-  std::string live;                        // "[HOST:]PORT" of record --live-port; empty: not live
-  std::string send;                        // "HOST:PORT" for a datagram of each frame; empty: none
+  std::string live;                        // "[HOST:]PORT" of `record --live-port`; empty: not live
+  std::string send;                        // "HOST:PORT" to which each frame is sent; empty: none
   std::optional<std::int64_t> look_ahead;  // frames
 };
 
-/// The flags live, look_ahead and send.
+/// The flags --live, --look-ahead and --send.
 std::vector<Field> live_flags(LiveWords& o);
 
 /// A numeric address and a port.
@@ -28,14 +28,14 @@ struct Endpoint {
   std::uint16_t port = 0;
 };
 
-/// A port from 1 to 65535; absent for any other text.
+/// Parses a port from 1 to 65535. Empty for any other text.
 std::optional<std::uint16_t> parse_port(std::string_view text);
 
-/// Accepts "7040", "127.0.0.1:7040", "[::1]:7040". `flag`: named in errors.
+/// Parses an address such as "7040", "127.0.0.1:7040" or "[::1]:7040". Errors name `flag`.
 Result<Endpoint> parse_endpoint(const std::string& text, const std::string& flag);
 
-/// Fails if flags contradict each other or the input, or if an endpoint can't be read. `in`: the
-/// input files.
+/// Fails if the flags contradict each other or the input, or if an address can't be parsed. `in`:
+/// the input files.
 Result<void> check(const LiveWords& o, const std::vector<std::string>& in);
 
 }  // namespace kinalign

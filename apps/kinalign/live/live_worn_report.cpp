@@ -13,10 +13,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double longest_lost_s = 2.0;  // a node lost for longer gets a warning
+constexpr double longest_lost_s = 2.0;  // a node that is lost for longer gets a warning
 
-/// The sample in the form that calibration uses, with a normalised orientation.
-/// Numbers of a packet are floats; calibration computes in double.
+/// Converts a sample to the form that calibration uses: double in place of float, and a normalised
+/// orientation.
 NodeReadings readings_of(const LiveNodeSample& one) {
   const NodeSample& sample = one.sample;
   NodeReadings out{one.stamp, one.arrival, {}, {}, {}, true};
@@ -31,7 +31,8 @@ NodeReadings readings_of(const LiveNodeSample& one) {
   }
   if (sample.has_acceleration) {
     out.acceleration = vector(sample.acceleration);
-    // A device that removes gravity itself can't show how it is tilted; calibration must know that.
+    // A device that removes gravity from its acceleration can't show how it is tilted. Calibration
+    // must know that.
     out.gravity = sample.gravity_included;
   }
   if (sample.has_angular_velocity) out.angular_velocity = vector(sample.angular_velocity);
@@ -58,8 +59,8 @@ void warn_of_turn(double fastest_deg_s, Json& warnings) {
       "a node turned at {:.0f} deg/s in the T-pose: the person did not hold still", fastest_deg_s));
 }
 
-// A node without samples and a node without samples in the T-pose look alike in the answer. The
-// user has to mend different things.
+// A node that sent nothing and a node that sent nothing during the T-pose have different causes, so
+// the user gets different texts.
 std::string missing_warning(const std::string& node, bool has_samples, bool is_used,
                             double lost_s) {
   if (!has_samples) return node + " has no samples: its limb is a guess";
@@ -90,18 +91,18 @@ Result<bool> LiveWornReport::add(const LiveNodeSample& sample) {
 }
 
 void LiveWornReport::take(const LiveMark& mark) {
-  // Marks of other kinds begin and end takes of the recorder.
+  // Other kinds of marks are for the recorder: they begin and end takes.
   if (mark.mark.mark.kind != Mark::Kind::t_pose) return;
-  // A new mark is a new attempt, so the same refusal is reported again.
+  // Each mark is a new attempt, so a refusal is reported again even for the same reason.
   refusal_.clear();
-  // The grid begins with the root's first sample. A mark before it has no frame.
+  // Frames begin at the first sample of the root's node, so an earlier mark belongs to no frame.
   if (!worn_->nodes().begin())
     return report_refusal("the mark came before the first sample of " + layout_->nodes.back());
   worn_->mark_t_pose(mark.at);
   session_->report("T-pose marked: hold still for two seconds", Json{{"event", "t_pose_marked"}});
 }
 
-/// Reports a refused T-pose; the same reason only once in a row.
+/// Reports that a T-pose was refused. The same reason is reported once until the next mark.
 void LiveWornReport::report_refusal(const std::string& why) {
   if (why == refusal_) return;
   refusal_ = why;
@@ -113,7 +114,7 @@ void LiveWornReport::report_refusal(const std::string& why) {
 
 bool LiveWornReport::report_t_pose() {
   if (const auto why = worn_->take_refusal()) report_refusal(*why);
-  // The first frame identifies a calibration: a new T-pose has another one.
+  // Each T-pose has another first frame, which therefore tells whether the calibration is new.
   if (!worn_->calibration() || worn_->calibration()->first == reported_) return false;
   reported_ = worn_->calibration()->first;
   refusal_.clear();
@@ -132,12 +133,12 @@ void LiveWornReport::watch(const std::vector<std::uint8_t>& valid) {
     const std::string& name = layout_->nodes[n];
     const std::size_t before = missing_[n];
     missing_[n] = valid[n] != 0 ? 0 : before + 1;
-    // Equality reports the loss once, in the frame in which it reaches the limit.
+    // The loss is reported once, in the frame in which it reaches the limit.
     if (missing_[n] == longest) {
       session_->report(name + " has been missing for 2 s: its limb is a guess",
                        Json{{"event", "node_missing"}, {"node", name}});
-      // A node that was switched off has a new heading after its start, which only a new T-pose can
-      // find.
+      // A node that was switched off has a new heading when it starts again. Only a new T-pose can
+      // measure that heading.
     } else if (missing_[n] == 0 && before >= longest) {
       session_->report(name + " sends again; if it was switched off, mark a new T-pose",
                        Json{{"event", "node_back"}, {"node", name}});
@@ -156,7 +157,7 @@ void LiveWornReport::count(const std::vector<std::uint8_t>& valid) {
 }
 
 std::string LiveWornReport::waits_for() const {
-  // begin() is absent until the root's node has sent.
+  // Before the root's node has sent a sample, begin() is empty.
   if (!worn_->nodes().begin()) return "waiting for the nodes: " + names_.text();
   if (worn_->calibration()) return "";
   return fmt::format("waiting for a T-pose without motion ({}){}", names_.text(),
@@ -191,10 +192,10 @@ Json LiveWornReport::about() const {
   }
   Json out{{"valid", valid}, {"nodes", std::move(nodes)}};
   out.update(calibration());
-  // Late samples came after their frame was made.
+  // Late samples are those that came after their frame had been made.
   out["late_samples"] = worn_->nodes().late();
   warn_of_turn(worn_->calibration()->fastest_deg_s, warnings);
-  // A node that the model does not use is often one whose place is missing in lab.toml.
+  // If a node is not used by the model, its place is often missing in lab.toml.
   for (const std::string& other : names_.others()) {
     warnings.push_back(other + " is not a node of the model: state in lab.toml where it is worn");
   }

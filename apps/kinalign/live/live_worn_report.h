@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nodes of a live stream on their way into a model: their names, the reports about the T-pose,
-// and the JSON at the end. Used by pose --live and fuse --live.
+// Prepares the nodes of a live stream for a model: finds their names, reports about the T-pose, and
+// makes the JSON at the end. `pose --live` and `fuse --live` use it.
 #pragma once
 
 #include "apps/kinalign/live/live_node_names.h"
@@ -15,59 +15,58 @@
 
 namespace kinalign {
 
-// The next three are about nodes of files as well (apps/kinalign/learn/worn_nodes.h).
+// The next four declarations also serve runs on files (apps/kinalign/learn/worn_nodes.h).
 
-/// The seconds of a T-pose, and the fastest turn of a node in it.
+/// The time of a T-pose, s, and the fastest turn of a node during it, degrees/s.
 struct UsedTPose {
   double from_s = 0.0, to_s = 0.0;
-  bool found = false;  // true: found by the program, not stated by the user
+  bool found = false;  // true: the program found it; false: the user stated it
   double fastest_deg_s = 0.0;
 };
-/// The members t_pose, headings, facing, spread_deg and worn_as_described.
+/// The JSON members t_pose, headings, facing, spread_deg and worn_as_described.
 nlohmann::ordered_json calibration_json(const UsedTPose& t_pose, const NodeCalibration& found);
-/// Appends a warning if a node turned in the T-pose, which makes the calibration of all nodes
-/// wrong.
+/// Appends a warning if a node turned during the T-pose, because the calibration of all nodes is
+/// wrong then.
 void warn_of_turn(double fastest_deg_s, nlohmann::ordered_json& warnings);
-/// The warning about a node that is missing for 2 s or longer, or always; empty if it is not.
-/// `is_used`: it has samples in the T-pose.
+/// The warning about a node that is missing for 2 s or longer, or always. Empty if the node is not
+/// missing for so long. `is_used`: the node has samples in the T-pose.
 std::string missing_warning(const std::string& node, bool has_samples, bool is_used, double lost_s);
 
-/// The grid and the calibration are LiveWorn's; this class adds names and words. Invariant: each
-/// change (T-pose, loss, return) is reported once.
+/// Adds names and messages to LiveWorn, which makes the frames and the calibration. Invariant: each
+/// change (T-pose, loss, return of a node) is reported once.
 class LiveWornReport {
  public:
-  /// All arguments must live longer. `stream`: the stream of the nodes; empty: the first that sends
-  /// any.
+  /// All arguments must live longer than this object. `stream`: the stream of the nodes; empty: the
+  /// first that sends samples of nodes.
   LiveWornReport(const PoseLayout& layout, const std::string& stream, LiveWorn& worn,
                  LiveSession& session);
 
-  /// The instruction for the person: how to hold the T-pose.
+  /// The instruction for the person who wears the nodes: how to hold the T-pose.
   static std::string instruction();
 
-  /// Puts the sample onto the grid if its node is one of the model's. Returns whether it is.
+  /// Passes a sample to LiveWorn if it comes from a node of the model. Returns true if so.
   Result<bool> add(const LiveNodeSample& sample);
   /// Handles a mark. A mark of a T-pose calibrates the nodes.
   void take(const LiveMark& mark);
-  /// Reports T-poses taken or refused since the last call. True if one was taken.
+  /// Reports the T-poses that were accepted or refused since the last call. Returns true if one was
+  /// accepted.
   bool report_t_pose();
-  /// Called for each answered frame, with the validity of the nodes [N]. Reports a node that is
-  /// missing for long, and its return.
-  /// It tells a person in the room what to do while the run lasts; count() is for the summary.
+  /// Called for each answered frame; `valid` says for each node whether it had a sample. Tells the
+  /// people in the room that a node has been missing for long, and that it sends again.
   void watch(const std::vector<std::uint8_t>& valid);
-  /// Counts a frame of the result.
+  /// Counts the valid nodes of one frame, for the summary at the end.
   void count(const std::vector<std::uint8_t>& valid);
 
-  /// The thing that is waited for; empty: the nodes are calibrated.
+  /// A text that says what the run waits for. Empty once the nodes are calibrated.
   std::string waits_for() const;
   const LiveNodeNames& names() const { return names_; }
-  /// The members that about_nodes() has for a file. Needs calibrated nodes.
+  /// The JSON members that about_nodes() makes in a run on a file. The nodes must be calibrated.
   nlohmann::ordered_json about() const;
 
  private:
-  /// The frames in which a node was valid, and its longest loss.
-  /// The unit is a frame of the result.
+  /// The number of frames in which a node was valid, and its longest loss in frames.
   struct Presence {
-    std::size_t valid = 0, lost = 0, longest = 0;  // frames; lost: until now
+    std::size_t valid = 0, lost = 0, longest = 0;  // `lost`: frames since the node was last valid
   };
   void report_refusal(const std::string& why);
   nlohmann::ordered_json calibration() const;
@@ -76,11 +75,11 @@ class LiveWornReport {
   LiveWorn* worn_;
   LiveSession* session_;
   LiveNodeNames names_;
-  std::vector<Presence> presence_;    // [N]
-  std::vector<std::size_t> missing_;  // [N] frames answered without the node, until now
+  std::vector<Presence> presence_;    // for each node
+  std::vector<std::size_t> missing_;  // for each node: frames since it was last valid
   std::size_t frames_ = 0;
-  std::string refusal_;                  // the last reported refusal
-  std::optional<std::size_t> reported_;  // the first frame of the reported T-pose
+  std::string refusal_;                  // the refusal that was reported last
+  std::optional<std::size_t> reported_;  // the first frame of the T-pose that was reported last
 };
 
 }  // namespace kinalign
