@@ -29,7 +29,7 @@ namespace kinalign {
 
 namespace {
 
-/// The input of align, and the options that override a manifest.
+/// The input of `align`, and the options that override those of a manifest.
 struct AlignVerb {
   std::vector<std::string> manifest;  // at most one
   AlignOptions options;               // the options of alignment
@@ -37,8 +37,8 @@ struct AlignVerb {
   QuickFlags quick;
 };
 
-/// Checks flags against each other: a manifest excludes the flags of single files, and one of both
-/// is needed.
+/// Checks that the flags fit together. Either a manifest or the flags of single files must be
+/// given, not both.
 Result<void> check_use(const AlignVerb& o, const Common& common, const Sources& given) {
   const bool quick = !o.quick.mocap.empty();
   if (!o.manifest.empty()) KA_TRY(refuse_with_input(o.manifest.front(), given));
@@ -47,13 +47,12 @@ Result<void> check_use(const AlignVerb& o, const Common& common, const Sources& 
   }
   if (quick) {
     KA_TRY(refuse_alone(o.quick, given));
-    // The manifest is made here for its errors only: a wrong NAME=FILE must be wrong use (exit code
-    // 2), before any file is opened.
+    // quick_manifest() is called only for its errors: a wrong NAME=FILE must be wrong use (exit
+    // code 2), before any file is opened.
     KA_TRY(quick_manifest(o.quick));
   }
   const auto rotations = given.find("rotations");
-  // The settings may name another method of rotations. Only two flags of one command line
-  // contradict each other.
+  // --slerp contradicts --rotations only on the command line; it overrides a settings file.
   if (o.slerp && rotations != given.end() && rotations->second == Source::flag) {
     return Failure(Error{"--slerp", 0, "--rotations or --slerp", "both"});
   }
@@ -83,19 +82,20 @@ Usage describe_verb_options(AlignVerb& o) {
   return usage;
 }
 
-/// The manifest to align by. `recording` is set if a recording was opened to make the manifest.
+/// The manifest by which the recording is aligned. `recording` is set if a recording had to be
+/// opened to make the manifest.
 struct ToAlign {
   Manifest manifest;
   std::shared_ptr<RecordingSource> recording{};
 };
 
-/// The error for a file that is neither a recording nor a manifest; the error states what the file
-/// is.
+/// The error for a file that is neither a recording nor a manifest. It states what the file is
+/// instead.
 Result<Error> no_recording(FileSystem& files, const std::string& path) {
   InputFile file = KA_TRY(InputFile::open(files, path));
   const std::string_view head = KA_TRY(file.next());
   if (head.empty()) return unknown_file(path, head);
-  // The extension .mcap promises a recording, so a file with other content gets its own message.
+  // A file named .mcap should be a recording, so any other content gets its own message.
   if (path.ends_with(".mcap")) {
     return Error{
         path, 0,
@@ -107,7 +107,7 @@ Result<Error> no_recording(FileSystem& files, const std::string& path) {
                "another extension"};
 }
 
-/// The manifest of a file, or one made from the flags, with the options of the call.
+/// Makes the manifest from a file or from the flags, with the options of this call.
 Result<ToAlign> wanted_with_options(AlignVerb& o, const Call& call) {
   ToAlign wanted;
   Manifest& manifest = wanted.manifest;
@@ -119,8 +119,7 @@ Result<ToAlign> wanted_with_options(AlignVerb& o, const Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& path = o.manifest.front();
   if (KA_TRY(kind_of_file(files, path)) == FileKind::recording) {
-    // The recording stays open: open_files() reads its streams from it instead of opening and
-    // surveying it again.
+    // The recording stays open, so that open_files() need not open and read it a second time.
     wanted.recording = KA_TRY(RecordingSource::open(files, path, RecordingSource::Devices::learned,
                                                     {}, call.console.progress()));
     manifest = KA_TRY(recorded_manifest(wanted.recording->survey(), path));
@@ -129,8 +128,8 @@ Result<ToAlign> wanted_with_options(AlignVerb& o, const Call& call) {
   }
   if (!path.ends_with(".toml")) return Failure(KA_TRY(no_recording(files, path)));
   manifest = KA_TRY(load_manifest(files, path, o.options));
-  // A value from the environment or a flag overrides the manifest. A value from a settings file
-  // does not: it only fills keys that the manifest lacks.
+  // A flag or an environment variable overrides the manifest. A settings file only sets options
+  // that the manifest does not state.
   copy_given(describe(o.options), describe(manifest.align), call.sources, Source::environment);
   return wanted;
 }
@@ -141,9 +140,8 @@ Result<ToAlign> wanted_of(AlignVerb& o, const Call& call) {
   return wanted;
 }
 
-/// Checks --reference, which needs the names of the manifest's streams.
-/// A reference from a settings file is not checked here, because it may be meant for other
-/// recordings.
+/// Checks --reference against the names of the manifest's streams. A reference from a settings file
+/// is not checked, because it may be meant for other recordings.
 Result<void> check_reference(const AlignVerb& o, const Manifest& manifest, const Sources& given) {
   const auto source = given.find("reference");
   if (source == given.end() || source->second != Source::flag) return {};
@@ -153,8 +151,8 @@ Result<void> check_reference(const AlignVerb& o, const Manifest& manifest, const
   if (std::find(names.begin(), names.end(), wanted) == names.end()) {
     return Failure(Error{"--reference", 0, "a stream: " + any_of(names), shown(wanted)});
   }
-  // Quick flags fit the Kinect into the mocap's space by default. If the Kinect is the reference
-  // itself, there is nothing to fit it to.
+  // With flags for single files, the Kinect's coordinates are fitted to the mocap's by default. If
+  // the Kinect is the reference, it must not be moved.
   const auto moved = manifest.spaces.find(wanted);
   if (o.manifest.empty() && moved != manifest.spaces.end() && moved->second.method != "none") {
     return Failure(Error{"--reference", 0,
@@ -164,10 +162,10 @@ Result<void> check_reference(const AlignVerb& o, const Manifest& manifest, const
   return {};
 }
 
-/// Advice for a skeleton or points that do not overlap the other streams in time: the start with
-/// which both would begin together.
-/// Only a stream whose absolute time was set by hand can be moved: one with a fixed step (a BVH) or
-/// points. `first` to `last` is the span that all other streams share.
+/// Advice if a stream does not overlap the others in time: a start time with which it would begin
+/// together with them. Only streams whose absolute time is set by hand can be moved: points, and
+/// files with a fixed time between frames (BVH). `first` to `last` is the time that all other
+/// streams share.
 std::string start_advice(const AlignVerb& o, const Recording& recording, const Manifest& manifest) {
   for (const RecordedStream& s : recording.streams) {
     Time first = Time::min(), last = Time::max();
@@ -178,8 +176,8 @@ std::string start_advice(const AlignVerb& o, const Recording& recording, const M
     }
     const Time own = first_of(s);
     const bool apart = own > last || last_of(s) < first;
-    // Stamps outside of the legal range, and the start values of `first` and `last`, would overflow
-    // in the sums below.
+    // Stamps out of range, and the initial values of `first` and `last`, would overflow in the sums
+    // below.
     const auto near = [](Time t) {
       return to_ns(t) > -largest_stamp_ns && to_ns(t) < largest_stamp_ns;
     };
@@ -187,8 +185,8 @@ std::string start_advice(const AlignVerb& o, const Recording& recording, const M
     const bool quick = o.manifest.empty();
     const bool placed = s.step_ns || std::holds_alternative<PointInput>(s.data);
     if (!placed || !apart || first > last || !is_known || (quick && s.name != "mocap")) continue;
-    // The stream begins later than its start_ns by a constant latency. The advice keeps that
-    // latency: start_ns moves by the same amount as the first frame.
+    // The first frame comes later than start_ns by a constant latency. To keep this latency,
+    // start_ns is moved by as much as the first frame.
     const std::int64_t start =
         s.step_ns ? options_of(manifest, s.name).start_ns.value_or(0) : to_ns(s.survey.first);
     const std::int64_t latency = to_ns(own) - start;
@@ -200,9 +198,9 @@ std::string start_advice(const AlignVerb& o, const Recording& recording, const M
   return "";
 }
 
-/// The lines after an error. `path`: the manifest's path; empty if there is none.
-/// An error without a file comes from the flags. An error with a line comes from an input, and
-/// `check` may know more about that file.
+/// The lines below an error. `path`: the manifest's path; empty if there is none. An error without
+/// a file comes from the flags. An error with a line comes from an input, about which `kinalign
+/// check` may know more.
 std::vector<std::string> advice(const std::string& path, const Error& error) {
   std::vector<std::string> lines{"nothing was written"};
   const bool named = !path.empty() && error.file == path;
@@ -224,9 +222,9 @@ std::vector<std::string> advice(const std::string& path, const Error& error) {
   return lines;
 }
 
-/// Opens all files. Files given by flags are checked for their kind.
-/// A recording that is open already is used again. `base` is the folder to which the manifest's
-/// paths are relative.
+/// Opens all files. A recording that is already open is used again. Files that were given by flags
+/// must have the right kind of content. The paths in the manifest are relative to the folder
+/// `base`.
 Result<Recording> open_files(const AlignVerb& o, const ToAlign& wanted, const std::string& base,
                              Call& call) {
   Recording recording =
@@ -239,28 +237,27 @@ Result<Recording> open_files(const AlignVerb& o, const ToAlign& wanted, const st
   return recording;
 }
 
-/// Aligns a recording. An input is never overwritten, and a sibling file of a recording is an
-/// input, too.
+/// Aligns a recording and writes the take. No input is ever overwritten, nor any part of a
+/// recording in several files.
 Result<int> run(AlignVerb& o, Call& call) {
   const std::string path = o.manifest.empty() ? "" : o.manifest.front();
   call.console.if_it_fails([path](const Error& error) { return advice(path, error); });
   ToAlign wanted = KA_TRY(wanted_of(o, call));
   Manifest& manifest = wanted.manifest;
-  // The paths of flags are relative to the current folder. Those of a manifest are relative to the
-  // manifest's folder.
+  // Paths in flags are relative to the current folder, paths in a manifest to the manifest's
+  // folder.
   const std::string base =
       o.manifest.empty() ? cut_common_folder(manifest) : std::string(folder(o.manifest.front()));
-  // --dry-run aligns in full and prints the same report, but has no file to write.
+  // --dry-run aligns the whole recording and prints the same report, but writes no file.
   const std::string out = call.common.dry_run ? "" : call.common.out;
   KA_TRY(keep_inputs(out, o.manifest));
   KA_TRY(keep_inputs(out, with_siblings(call.surroundings.files, files_named(manifest, base))));
-  // A stream's name can be checked only after the manifest was read. It is wrong use all the same,
-  // so the exit code is 2.
+  // A stream's name can be checked only after the manifest was read. A wrong name is still wrong
+  // use (exit code 2).
   for (const auto& use : {check_take_name(out), check_reference(o, manifest, call.sources)}) {
     if (!use) return call.console.refuse(use.error());
   }
-  // The advice changes once the streams are open: only now is it known how far their spans lie
-  // apart.
+  // The advice about start times needs the open streams, so it is set after they were opened.
   const Recording recording = KA_TRY(open_files(o, wanted, base, call));
   call.console.if_it_fails(
       [path, start = start_advice(o, recording, manifest)](const Error& error) {
@@ -269,7 +266,8 @@ Result<int> run(AlignVerb& o, Call& call) {
         if (apart && !start.empty()) lines.push_back(start);
         return lines;
       });
-  // Errors of the plan name no file. The manifest is the one place where the user can mend them.
+  // Errors of the plan name no file. The user can correct them in the manifest, so its path is
+  // added.
   const AlignmentReport report =
       KA_TRY(align_to_file(call, recording, manifest, {out, call.common.overwrite()})
                  .map_error(in_file(path)));

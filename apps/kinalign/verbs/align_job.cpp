@@ -14,13 +14,12 @@ namespace kinalign {
 
 Result<AlignmentReport> align_to_file(const Call& call, const Recording& recording,
                                       const Manifest& manifest, const TakeTarget& target) {
-  // Opening parses and hashes whole files. The memory that it used lies free in the allocator and
-  // would count until the end.
-  malloc_trim(0);  // returns the memory freed after opening the recording to the system
+  // Opening parses and hashes whole files. The allocator keeps the memory that was used for it,
+  // which would count until the end.
+  malloc_trim(0);  // gives free memory back to the system
   std::optional<TakeWriter> writer;
   TakeSink sink;
-  // The writer is created when the header is known. A plan that fails therefore leaves no temporary
-  // file.
+  // The file is created when the header is known, so that an error before leaves no temporary file.
   sink.begin = [&](const TakeHeader& header) -> Result<void> {
     if (target.path.empty()) return {};
     writer.emplace(
@@ -32,7 +31,7 @@ Result<AlignmentReport> align_to_file(const Call& call, const Recording& recordi
   };
   AlignmentReport report =
       KA_TRY(align(recording, manifest, sink, call.console.progress(), call.jobs));
-  // finish() adds the report, syncs the file and gives it its final name.
+  // finish() adds the report, writes all data to the disk and gives the file its final name.
   if (writer) KA_TRY(writer->finish(report));
   return report;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Alignment from files to a file, for `align` and `rebuild`.
+// Aligns a recording into a file, for `align` and `rebuild`.
 #pragma once
 
 #include "apps/cli/verb.h"
@@ -11,15 +11,14 @@
 
 namespace kinalign {
 
-/// The file of a new take. Without a path the take is computed and not written.
+/// The file of a new take. If the path is empty, the take is computed and not written.
 struct TakeTarget {
   std::string path;
   Overwrite overwrite = Overwrite::no;
 };
 
-/// Aligns a recording and writes the take.
-/// HDF5 is only written here, so no child process is needed. If alignment fails, no file is created
-/// or replaced.
+/// Aligns a recording and writes the take. HDF5 only writes here, which is safe without a child
+/// process. If the alignment fails, no file is created or replaced.
 Result<AlignmentReport> align_to_file(const Call& call, const Recording& recording,
                                       const Manifest& manifest, const TakeTarget& target);
 

@@ -27,7 +27,7 @@ namespace kinalign {
 
 namespace {
 
-/// The options of `kinalign check`. Flags of a stream apply to every file in `files`.
+/// The options of `kinalign check`. Flags that describe a stream apply to every file in `files`.
 struct Check {
   std::vector<std::string> files;
   StreamFlags stream;
@@ -40,22 +40,21 @@ Usage describe_check(Check& o) {
                         "takes, recordings, recording.toml, XDF, streams' files or a BIDS folder",
                         &o.files, 1, SIZE_MAX}};
   usage.flags = o.stream.fields();
-  // A wrong --select is wrong use, found before a file is opened.
+  // A wrong --select is wrong use, which is found here before a file is opened.
   usage.check = [&o](const Common&, const Sources&) {
     return o.stream.stream({}).map([](const StreamOptions&) {});
   };
   return usage;
 }
 
-/// Reads every row of a take and returns its report. Runs in the child process.
-/// The rows themselves are not judged again: the report in the take holds the findings of
-/// alignment.
+/// Reads every row of a take and returns the take's report. Runs in a child process. The rows are
+/// not checked again, because the report has the findings of the alignment.
 Result<std::string> read_through(FileSystem& files, const std::string& path) {
   TakeReader reader = KA_TRY(TakeReader::open(files, path));
   TakeSlab slab;
   std::uint64_t rows = 0;
   while (KA_TRY(reader.next(slab))) rows += slab.stamps.size();
-  // The rows that were read must be as many as the header says.
+  // The take must have as many rows as its header states.
   if (rows != reader.header().frames) {
     return Failure(
         Error{path, 0, fmt::format("{} rows", reader.header().frames), std::to_string(rows)});
@@ -63,9 +62,9 @@ Result<std::string> read_through(FileSystem& files, const std::string& path) {
   return reader.report_json();
 }
 
-/// Problems that alignment would report before it reads a sample: joints, nodes, the common span.
-/// Runs the first part of alignment, which needs no samples. An error there is one finding, since
-/// the other files are to be checked too.
+/// The findings of the first part of alignment, which reads no samples: joints, nodes, the time
+/// that all streams share. An error there becomes a finding, so that the other files are checked,
+/// too.
 Findings check_plan(const std::string& path, const Input& input) {
   const auto judged = [&input]() -> Result<Findings> {
     const AlignPlan plan = KA_TRY(plan_alignment(input.recording, *input.manifest));
@@ -74,35 +73,33 @@ Findings check_plan(const std::string& path, const Input& input) {
   }();
   if (judged) return *judged;
   Error error = judged.error();
-  // The plan's errors are about the manifest unless they name a stream's file.
+  // An error that names no stream's file is about the manifest.
   if (error.file.empty()) error.file = path;
   const std::string repair = name_advice(error);
   return {
       {Severity::error, std::move(error), "kinalign align can't make a take of this file", repair}};
 }
 
-/// The findings, and the number of files they are about.
+/// The findings, and the number of files that were checked.
 struct Checked {
   Findings findings;
   std::size_t files = 1;
 };
 
 Result<Checked> check_take(FileSystem& files, const std::string& path) {
-  // A damaged take can crash HDF5, so it is read in a child process that returns the report's JSON.
+  // A damaged take can crash HDF5, so a child process reads it and returns the report as JSON.
   const std::string report =
       KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return read_through(files, path); }));
   Checked out{KA_TRY(report_findings(report, path))};
-  for (Finding& finding : out.findings) {  // several takes may be checked, so the take is named too
+  for (Finding& finding : out.findings) {  // with several takes the user must see which take it is
     std::string& file = finding.what.file;
     file = file.empty() ? path : fmt::format("{}: {}", path, file);
   }
   return out;
 }
 
-/// Replaces a file's name in the findings by the path that the user typed. A take names inputs
-/// relative to the manifest.
-/// Readers name a file by its last part. Without a manifest, the user must find the word that was
-/// typed.
+/// Puts the path that the user typed into the findings of a file. The readers name a file by the
+/// last part of its path only.
 void name_as_typed(const std::string& path, const RecordedStream& stream, Findings& findings) {
   for (Finding& finding : findings) {
     if (finding.what.file == stream.files.front().name) finding.what.file = path;
@@ -112,7 +109,7 @@ void name_as_typed(const std::string& path, const RecordedStream& stream, Findin
 /// Checks a recording with all of its parts.
 Result<Checked> check_recording(FileSystem& files, const std::string& path,
                                 const Progress& progress) {
-  // Checking reads no streams of a recording, so the clocks are not fitted.
+  // Checking does not use the clocks of the devices, so they are not computed.
   const auto recording =
       KA_TRY(RecordingSource::open(files, path, RecordingSource::Devices::surveyed, {}, progress));
   Checked out{judge_survey(path, recording->survey())};
@@ -120,9 +117,8 @@ Result<Checked> check_recording(FileSystem& files, const std::string& path,
   return out;
 }
 
-/// A note about a stream's file whose ending is that of another format.
-/// The content decides how a file is read. The wrong extension would mislead the next user or
-/// another program.
+/// A note if a stream's file has the extension of another format. kinalign reads the file by its
+/// content, but the extension would mislead people and other programs.
 Findings judge_name(const std::string& path, const RecordedStream& stream) {
   const bool misnamed = path.ends_with(".mcap") || path.ends_with(".xdf") || path.ends_with(".h5");
   if (!misnamed) return {};
@@ -136,8 +132,8 @@ Findings judge_name(const std::string& path, const RecordedStream& stream) {
 /// Reads all streams in parallel. The findings are about stamps, arrivals and values.
 Result<Findings> check_streams(const Check& o, const Input& input, Call& call) {
   const Recording& recording = input.recording;
-  // The reference keeps its stamps and the others are resampled, so their steps are judged
-  // differently.
+  // The reference stream keeps its stamps and the other streams are resampled, so the times between
+  // samples are judged differently.
   const std::string reference = input.manifest ? reference_name(recording, *input.manifest) : "";
   const auto options = [&](const RecordedStream& stream) -> const StreamOptions& {
     return input.manifest ? options_of(*input.manifest, stream.name) : o.stream.options;
@@ -148,7 +144,7 @@ Result<Findings> check_streams(const Check& o, const Input& input, Call& call) {
   for (const RecordedStream& stream : recording.streams) {
     call.console.detail(harmless(read_as(stream)));
   }
-  // arrivals_of() reads each stream once, in parallel. The loop below only judges what it found.
+  // arrivals_of() reads all streams once, in parallel. The loop below judges the results.
   const std::vector<Arrivals> arrivals = KA_TRY(arrivals_of(
       recording.streams,
       [&](const RecordedStream& s) { return taken_step(s, options(s), role(s)); },
@@ -156,7 +152,7 @@ Result<Findings> check_streams(const Check& o, const Input& input, Call& call) {
   Findings out;
   for (std::size_t i = 0; i < recording.streams.size(); ++i) {
     const RecordedStream& stream = recording.streams[i];
-    // Findings of a file that several streams share are listed at its first stream only.
+    // If several streams come from one file, the file's findings are listed with the first of them.
     if (const SharedFile* file = newly_read_file(recording, i)) append(out, file->findings);
     Findings found = all_findings(stream);
     append(found, judge_stamps(stream, options(stream)));
@@ -167,7 +163,7 @@ Result<Findings> check_streams(const Check& o, const Input& input, Call& call) {
   return out;
 }
 
-/// Checks a stream's file, or a manifest with all of its streams.
+/// Checks the file of one stream, or a manifest with all of its streams.
 Result<Checked> check_input(const Check& o, const std::string& path, Call& call) {
   FileSystem& files = call.surroundings.files;
   const Input input = KA_TRY(open_input(files, path, o.stream, call.console.progress()));
@@ -175,12 +171,11 @@ Result<Checked> check_input(const Check& o, const std::string& path, Call& call)
     KA_TRY(o.stream.check_use(path, &input.recording.streams.front(), call));
   }
   Checked out;
-  // The summary counts the files behind a manifest, and not the manifest itself.
+  // The summary counts the files that the manifest names, not the manifest itself.
   if (input.manifest) out.files = files_named(*input.manifest, "").size();
   append(out.findings, KA_TRY(check_streams(o, input, call)));
   if (input.manifest) {
-    // The findings about streams come first, since one of them may be the cause of a plan that
-    // fails.
+    // The findings about streams come first, since they may explain an error of the plan.
     append(out.findings, check_plan(path, input));
   } else {
     append(out.findings, judge_name(path, input.recording.streams.front()));
@@ -189,11 +184,11 @@ Result<Checked> check_input(const Check& o, const std::string& path, Call& call)
   return out;
 }
 
-/// Checks a folder of BIDS. A kinalign data set is checked by `kinalign dataset verify`.
+/// Checks a folder in the format BIDS. `kinalign dataset verify` checks a data set of kinalign.
 Result<Checked> check_folder(const Check& o, const std::string& path, Call& call) {
   namespace fs = std::filesystem;
   KA_TRY(o.stream.check_use(path, nullptr, call));
-  // Both kinds of folder may hold takes, but only `dataset verify` knows the catalogue.
+  // A data set may look like a BIDS folder, but only `dataset verify` knows its dataset.toml.
   if (fs::exists(path + "/dataset.toml")) {
     return Failure(Error{path, 0, "kinalign dataset verify for a data set", "kinalign check"});
   }
@@ -203,19 +198,19 @@ Result<Checked> check_folder(const Check& o, const std::string& path, Call& call
                          "a directory", ErrorKind::directory});
   }
   Checked out{check_bids(listing), listing.paths.size()};
-  // The listing has paths relative to the folder. A finding must name a path that the user can
-  // open.
+  // The findings name files relative to the folder. The user needs a path that can be opened.
   for (Finding& finding : out.findings) finding.what.file = path + "/" + finding.what.file;
   return out;
 }
 
 Result<Checked> check_file(const Check& o, const std::string& path, Call& call) {
-  // A directory can't be opened as a file, so it is recognised before the kind of a file is read.
+  // A folder can't be opened as a file, so it is recognised first.
   if (std::filesystem::is_directory(path)) return check_folder(o, path, call);
   FileSystem& files = call.surroundings.files;
   const FileKind kind = KA_TRY(kind_of_file(files, path));
-  // The other kinds state how their streams are read, so flags of a stream are refused before a
-  // long file is read. A model contains no motion: opening it fails with that message.
+  // Other kinds of file state how their streams are read, so flags that describe a stream are
+  // refused before a long file is read. A model contains no motion; open_input() fails with that
+  // message.
   if (kind != FileKind::stream && kind != FileKind::unknown && kind != FileKind::model) {
     KA_TRY(o.stream.check_use(path, nullptr, call));
   }
@@ -225,12 +220,12 @@ Result<Checked> check_file(const Check& o, const std::string& path, Call& call) 
   if (kind == FileKind::xdf) {
     return Checked{judge_survey(path, KA_TRY(survey_xdf(files, path, progress)))};
   }
-  // Opening an unknown file fails with the reason, unless --layout states its format.
+  // For a file of unknown format, opening fails with the reason, unless --layout states the format.
   return check_input(o, path, call);
 }
 
-/// Checks all files and prints one list of findings. The worst case decides the exit code: 3 if a
-/// file can't be used.
+/// Checks all files and prints one list of findings. The worst result decides the exit code; 3
+/// means that a file can't be used.
 Result<int> run(Check& o, Call& call) {
   Findings all;
   std::size_t files = 0;
@@ -240,11 +235,11 @@ Result<int> run(Check& o, Call& call) {
     if (found) {
       append(all, found->findings);
       files += found->files;
-      // A single file that can't be read is an error of the verb. Wrong use and Ctrl-C end the
-      // whole run.
+      // If there is only one file, its error is the verb's error. Wrong use and Ctrl-C end the verb
+      // in any case.
     } else if (o.files.size() == 1 || call.console.refused() || interrupted()) {
       return Failure(std::move(found).error());
-    } else {  // an unreadable file must not hide problems of the others
+    } else {  // the other files must still be checked
       usable = false;
       all.push_back({Severity::error, std::move(found).error(), "the file can't be used", ""});
     }

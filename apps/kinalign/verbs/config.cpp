@@ -15,10 +15,10 @@ namespace kinalign {
 
 namespace {
 
-/// `config` has no options of its own; make_verb() needs a type.
+/// The options of `kinalign config`, which has none. make_verb() needs a type.
 struct Config {};
 
-/// A setting in force: its verb, name and value, and the place that sets it.
+/// A setting with its verb, name, value, and the place that sets it.
 struct InForce {
   std::string verb, name, value, whence;
 };
@@ -34,7 +34,7 @@ std::string whence(const std::string& name, Source source, const std::vector<Set
   return source == Source::flag ? flag_of(name) : "standard";
 }
 
-/// Appends the fields with their values and places. A field that is missing in `sources` has its
+/// Appends the fields with their values and places. A field that `sources` does not contain has its
 /// default.
 void list(const Fields& fields, const std::string& verb, const Sources& sources,
           const std::vector<SettingsFile>& files, std::vector<InForce>& all) {
@@ -45,17 +45,17 @@ void list(const Fields& fields, const std::string& verb, const Sources& sources,
   }
 }
 
-/// Adds a verb's settings, as its own call would find them.
+/// Adds the settings that a verb would use if it were called now.
 Result<void> list_verb(const Verb& verb, const Call& call, const std::vector<SettingsFile>& files,
                        std::vector<InForce>& all) {
   Result<void> result;
   describe_verb(verb, [&](const Usage& usage) {
-    // The real call has set only the options of `config`. Each other verb's settings are therefore
-    // applied here, to a new set of its options.
+    // The present call has set only the options of `config`. The settings of another verb are
+    // therefore applied here, to new options of that verb.
     const Settable settable{verb.page, usage.settings, {}};
     Sources sources;
-    // The order is that of a real call: files from the weakest to the strongest, then the
-    // environment. apply_settings() keeps values of stronger sources.
+    // Files come first, from the weakest to the strongest, then the environment, as in a real call.
+    // apply_settings() does not override a stronger source.
     result = [&]() -> Result<void> {
       for (const SettingsFile& file : files) {
         KA_TRY(apply_settings(file, settable, call.verbs, sources));
@@ -67,13 +67,13 @@ Result<void> list_verb(const Verb& verb, const Call& call, const std::vector<Set
   return result;
 }
 
-/// All settings in force: those that all verbs share, then each verb's own.
+/// All settings: those that all verbs share, then the settings of each verb.
 Result<std::vector<InForce>> all_in_force(const Call& call) {
   const auto files =
       KA_TRY(parse_settings(KA_TRY(find_settings(call.surroundings, call.common.config))));
   std::vector<InForce> all;
-  // common_fields() needs a page to choose from. This page takes `jobs`, so the list holds
-  // everything that a settings file may set for all verbs.
+  // common_fields() returns `jobs` only for a page that takes it, so this page does. Below, fields
+  // that a settings file may not set are removed.
   Common common = call.common;
   Fields everywhere = common_fields(
       common, {.name = "", .summary = "", .text = "", .examples = {}, .common = {"jobs"}});
@@ -85,7 +85,8 @@ Result<std::vector<InForce>> all_in_force(const Call& call) {
 
 /// Prints all settings in aligned columns, or as JSON.
 Result<int> run(Config&, Call& call) {
-  // Two passes: the columns can be aligned only if the widest name and value are known.
+  // The widest name and value must be known before the first line is printed, so there are two
+  // passes.
   const auto all = KA_TRY(all_in_force(call));
   auto settings = nlohmann::ordered_json::array();
   std::size_t name_width = 0;

@@ -27,14 +27,14 @@ namespace kinalign {
 
 namespace {
 
-/// The options of `kinalign convert`. The parser guarantees one word in each of both lists.
+/// The options of `kinalign convert`. Both lists have exactly one word.
 struct Convert {
-  std::vector<std::string> from, to;  // one of each
-  bool store_double = false;          // 8-byte numbers in an NPZ
+  std::vector<std::string> from, to;  // one word each
+  bool store_double = false;          // true: an NPZ gets numbers of 8 bytes
   StreamFlags stream;
 };
 
-/// The command line of `kinalign convert`. The ending of the new file decides its format.
+/// The command line of `kinalign convert`. The ending of the new file's name decides its format.
 Usage describe_convert(Convert& o) {
   Usage usage;
   usage.positionals = {
@@ -43,7 +43,7 @@ Usage describe_convert(Convert& o) {
   usage.flags = o.stream.fields();
   usage.flags.push_back({"double", "store 8-byte numbers instead of 4-byte ones", &o.store_double});
   usage.check = [&o](const Common&, const Sources&) -> Result<void> {
-    // The extension alone decides the format, so an unknown one must not be guessed.
+    // The format of the new file follows from its ending only, so an unknown ending is refused.
     const std::string& to = o.to.front();
     if (!to.ends_with(".npz") && !to.ends_with(".bvh") && !to.ends_with(".mcap")) {
       return Failure(Error{to, 0, "a name that ends in .npz, .bvh or .mcap", "another extension"});
@@ -56,7 +56,7 @@ Usage describe_convert(Convert& o) {
   return usage;
 }
 
-/// One conversion: from one file to one new file. `files` is the call's and must outlive the job.
+/// One conversion of a file into a new file. `files` must live longer than the job.
 struct Job {
   FileSystem& files;
   std::string from, to;
@@ -64,17 +64,16 @@ struct Job {
   bool store_double = false;
 };
 
-/// The rows of a stream in the form that a take stores.
-/// The overloads below give the three kinds of streams one shape, so write_rows() and
-/// stream_to_npz() are written once.
+/// Brings rows of a stream into the form that a take stores. There is one overload for each of the
+/// three kinds of streams, so that write_rows() and stream_to_npz() work for all kinds.
 ClipRows rows_of(const ClipInput& input, ClipFrames& block) {
   return own_rows(input.skeleton, std::move(block));
 }
 
 PointRows rows_of(const PointInput&, PointFrames& block) { return own_rows(std::move(block)); }
 
-// The last member, the distance of samples from raw ones, stays empty: rows as recorded were not
-// resampled.
+// The last member, the distance of each sample from its raw sample, stays empty, because recorded
+// rows were not resampled.
 ImuRows rows_of(const ImuInput&, ImuSamples& block) {
   return {std::move(block.orientation),
           std::move(block.acceleration),
@@ -87,9 +86,8 @@ ClipGroup group_of(const ClipInput& input) { return {input.skeleton}; }
 PointGroup group_of(const PointInput& input) { return {input.joint_names}; }
 ImuGroup group_of(const ImuInput& input) { return {input.node_names, input.content, ""}; }
 
-/// Writes all rows of a stream to an NPZ, block by block.
-/// The lengths of an NPZ's arrays are fixed before the first row. `frames` is the survey's count
-/// and the end of the progress.
+/// Writes all rows of a stream to an NPZ, block by block. The lengths of the arrays in an NPZ must
+/// be known before the first row, so `frames` is the number of rows that the survey counted.
 template <class Input, class Frames>
 Result<void> write_rows(const Input& input, const Passes<Frames>& passes, std::uint64_t frames,
                         const Progress& progress, TakeNpzWriter& writer) {
@@ -100,18 +98,17 @@ Result<void> write_rows(const Input& input, const Passes<Frames>& passes, std::u
     slab.stamps = block.stamps;
     slab.rows = {rows_of(input, block)};
     KA_TRY(writer.append(slab));
-    // `first` is the number of the slab's first row in the whole file.
+    // `first` is the index of the block's first row in the whole file.
     slab.first += slab.stamps.size();
     if (!go_on(progress, "converting", slab.first, frames)) return Failure(interruption());
   }
   return writer.finish();
 }
 
-/// Writes one stream's file as an NPZ. The stream's own names are kept without a prefix.
+/// Writes the file of one stream as an NPZ. The names of the arrays have no prefix.
 Result<void> stream_to_npz(const Job& job, const RecordedStream& stream, const Progress& progress) {
   TakeHeader header;
-  // The survey counted all rows when the file was opened, so the arrays' lengths are known in
-  // advance.
+  // All rows were counted when the file was opened, so the lengths of the arrays are known.
   header.frames = stream.survey.samples;
   header.parameters.align.store_double = job.store_double;
   return std::visit(
@@ -124,24 +121,23 @@ Result<void> stream_to_npz(const Job& job, const RecordedStream& stream, const P
       stream.data);
 }
 
-/// Runs `write(sink)` into a new file and returns its findings.
+/// Calls `write` with a function that writes into a new file. Returns the findings of `write`.
 template <class Write>
 Result<Findings> put_bvh(const Job& job, const Write& write) {
-  // The file gets its name at commit(). A failed conversion therefore leaves an existing file as it
-  // was.
+  // The file gets its name in commit(). If the conversion fails, an existing file stays as it was.
   OutputFile out = KA_TRY(OutputFile::create(job.files, job.to, job.overwrite));
   Findings findings = KA_TRY(write([&out](std::string_view text) { return out.write(text); }));
   KA_TRY(out.commit());
   return findings;
 }
 
-// take_to_npz and take_to_bvh read HDF5 and run in a child process.
+// take_to_npz() and take_to_bvh() read HDF5, so they run in a child process.
 
-/// Writes all streams of a take into one NPZ; names of arrays begin with the stream's.
+/// Writes all streams of a take into one NPZ. The name of each array begins with the stream's name.
 Result<void> take_to_npz(const Job& job) {
   TakeReader reader = KA_TRY(TakeReader::open(job.files, job.from));
   TakeHeader header = reader.header();
-  // A take that stores 8-byte numbers keeps them; --double only widens.
+  // If the take has numbers of 8 bytes, the NPZ has them even without --double.
   if (job.store_double) header.parameters.align.store_double = true;
   auto writer =
       KA_TRY(TakeNpzWriter::create(job.files, job.to, job.overwrite, header, NpzNames::by_stream));
@@ -150,9 +146,9 @@ Result<void> take_to_npz(const Job& job) {
   return writer.finish();
 }
 
-/// Converts a take in a child process, which returns its findings as a report's JSON.
+/// Converts a take in a child process.
 Result<Findings> convert_in_child(const Job& job) {
-  // Only text comes back from a child, so findings travel as the JSON of a report.
+  // A child process returns only text, so the findings come back as the JSON of a report.
   const auto work = [&job]() -> Result<std::string> {
     Findings findings;
     if (job.to.ends_with(".npz")) {
@@ -168,13 +164,14 @@ Result<Findings> convert_in_child(const Job& job) {
 
 Result<Findings> convert_take(const Job& job, const Convert& o, Call& call) {
   KA_TRY(o.stream.check_use(o.from.front(), nullptr, call));
-  // Only a child process may read a take, because a damaged one can crash HDF5.
+  // A damaged take can crash HDF5, so only a child process may read a take.
   if (!job.to.ends_with(".mcap")) return convert_in_child(job);
   return call.console.refuse(
       Error{job.to, 0, "a name that ends in .npz or .bvh, for a take", "another extension"});
 }
 
-/// The findings of a file that several streams share appear once, at the first of these streams.
+/// All findings of a recording. If several streams come from one file, the file's findings are
+/// listed once.
 Findings findings_of(const Recording& recording) {
   Findings all;
   for (std::size_t i = 0; i < recording.streams.size(); ++i) {
@@ -185,11 +182,10 @@ Findings findings_of(const Recording& recording) {
   return all;
 }
 
-/// Converts all devices of a recording whose data can be read as rows, and the recording's own
-/// marks.
+/// Converts a recording: all devices whose data can be read as rows, and the recording's marks.
 Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call) {
   const Progress progress = call.console.progress();
-  // The devices of a recording have no common grid of stamps. Only `align` can make arrays of them.
+  // The devices of a recording have different stamps. Only `align` makes arrays with common stamps.
   if (!job.to.ends_with(".mcap")) {
     return call.console.refuse(
         Error{job.to, 0, "a name that ends in .mcap, for a recording",
@@ -199,7 +195,7 @@ Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call)
   const auto source = KA_TRY(
       RecordingSource::open(job.files, job.from, RecordingSource::Devices::learned, {}, progress));
   const Manifest manifest = KA_TRY(recorded_manifest(source->survey(), job.from));
-  // One device that can't be read must not keep the others from being shown. It becomes a warning.
+  // If one device can't be read, that is a warning, and the other devices are converted.
   const OpenedInPart opened = KA_TRY(open_what_can_be(
       job.files, manifest, std::string(folder(job.from)), {progress, call.jobs, source}));
   const Findings left_out = KA_TRY(
@@ -215,7 +211,7 @@ Result<Findings> convert_xdf(const Job& job, const Convert& o, Call& call) {
     return call.console.refuse(
         Error{job.to, 0, "a name that ends in .mcap, for an XDF file", "another extension"});
   }
-  // An XDF describes its own streams, so no flag of a stream applies.
+  // An XDF file describes its streams itself, so no flag that describes a stream is allowed.
   KA_TRY(o.stream.check_use(o.from.front(), nullptr, call));
   return show_xdf(job.files, job.from, job.to, job.overwrite, call.console.progress());
 }
@@ -226,7 +222,7 @@ Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
   const RecordedStream& stream = input.recording.streams.front();
   KA_TRY(o.stream.check_use(o.from.front(), &stream, call));
   call.console.detail(harmless(read_as(stream)));
-  // BVH to BVH copies the text's values, so no number is rounded on its way through a clip.
+  // From BVH to BVH the numbers are copied as text, so that none is rounded.
   if (job.to.ends_with(".bvh")) {
     return put_bvh(job, [&](const FileSink& sink) {
       return copy_bvh(job.files, job.from, sink, call.console.progress());
@@ -239,13 +235,13 @@ Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
   } else {
     KA_TRY(stream_to_npz(job, stream, call.console.progress()));
   }
-  // The recording has one stream, and `findings` holds those of its file as well.
+  // `findings` of the single stream include the findings of its file.
   Findings findings = stream.findings;
   append(findings, left_out);
   return findings;
 }
 
-/// Chooses the conversion by the kind of the input.
+/// Chooses the conversion by the kind of the input file.
 Result<Findings> convert(const Job& job, const Convert& o, Call& call) {
   switch (KA_TRY(kind_of_file(job.files, job.from))) {
     case FileKind::recording:
@@ -257,20 +253,20 @@ Result<Findings> convert(const Job& job, const Convert& o, Call& call) {
     case FileKind::manifest:
       return call.console.refuse(Error{job.from, 0, "a take, or one stream's file", "a manifest"});
     case FileKind::stream:
-    case FileKind::model:    // contains no motion: opening it fails with that message
-    case FileKind::unknown:  // opening it fails with the reason, unless --layout states its format
+    case FileKind::model:    // a model contains no motion: opening it fails with that message
+    case FileKind::unknown:  // opening fails with the reason, unless --layout states the format
       break;
   }
   return convert_stream(job, o, call);
 }
 
-/// Converts a file. The sibling files of a recording are inputs, too, and never overwritten.
+/// Converts a file. The parts of a recording in several files are inputs, too, and are never
+/// overwritten.
 Result<int> run(Convert& o, Call& call) {
   call.console.advise("nothing was written");
   const Job job{call.surroundings.files, o.from.front(), o.to.front(), call.common.overwrite(),
                 o.store_double};
-  // The parts of a recording lie next to it under derived names. The new file must not take one of
-  // them.
+  // The parts of a recording lie in its folder. The new file must not have the name of a part.
   KA_TRY(keep_inputs(job.to, with_siblings(call.surroundings.files, {job.from})));
   const Findings findings = KA_TRY(convert(job, o, call));
   call.console.wrote(job.to);

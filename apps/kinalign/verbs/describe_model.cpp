@@ -23,8 +23,8 @@ namespace kinalign {
 
 namespace {
 
-// An ordered object prints its members in the order of this file, so the same model gives the same
-// bytes.
+// An ordered object prints its members in the order in which they are added, so the same model
+// always gives the same bytes.
 using Json = nlohmann::ordered_json;
 
 /// The number of trained values of a network.
@@ -38,11 +38,11 @@ std::size_t parameters_of(const Architecture& architecture) {
   return sum;
 }
 
-/// A layer in words: "conv 128, kernel 5, dilation 2, causal".
+/// A layer of a network in words: "conv 128, kernel 5, dilation 2, causal".
 std::string layer_text(const Layer& layer) {
   const LayerKind kind = layer.kind;
-  // A row of the table of layer kinds tells which members a kind uses. The other members hold
-  // defaults and are not shown.
+  // A table states which members each kind of layer uses. The other members have defaults and are
+  // not shown.
   std::string text(row_of(kind).name);
   if (uses(kind, member_out)) text += fmt::format(" {}", layer.out);
   if (uses(kind, member_kernel)) text += fmt::format(", kernel {}", layer.kernel);
@@ -55,9 +55,9 @@ std::string layer_text(const Layer& layer) {
   return text;
 }
 
-/// The layers, one a line; branches stand below their layer, indented.
-/// Branches are networks of their own, whose outputs the layer joins. An empty branch passes its
-/// input on unchanged.
+/// The layers of a network, one on each line. A layer may join the outputs of several branches,
+/// which are themselves networks; they are indented below the layer. An empty branch does not
+/// change its input.
 std::string layer_lines(const std::vector<Layer>& layers, std::size_t indent) {
   std::string text;
   for (const Layer& layer : layers) {
@@ -71,7 +71,8 @@ std::string layer_lines(const std::vector<Layer>& layers, std::size_t indent) {
   return text;
 }
 
-/// An absent number stands for an unlimited view, for example of a recurrent layer.
+/// The number of frames that a network uses in one direction. Empty means all frames, as for a
+/// recurrent layer.
 std::string frames_text(const std::optional<std::size_t>& frames, std::string_view way) {
   return frames ? fmt::format("{} {}", *frames, way) : fmt::format("all {}", way);
 }
@@ -79,8 +80,8 @@ std::string frames_text(const std::optional<std::size_t>& frames, std::string_vi
 /// A network in words: "net: 147 in, 84 out, 166,228 parameters; a frame sees 17 before and 17
 /// after it".
 std::string network_lines(const std::string& name, const Architecture& architecture) {
-  // "before" and "after" decide whether the model can run live: frames after the current one delay
-  // its output.
+  // These numbers decide whether the model can run live: each frame after the current one delays
+  // the output.
   const std::string about =
       fmt::format("{}: {} in, {} out, {}; a frame sees {} and {} it", name, architecture.inputs,
                   outputs(architecture), counted(parameters_of(architecture), "parameter"),
@@ -89,19 +90,20 @@ std::string network_lines(const std::string& name, const Architecture& architect
   return fact_line("network", about) + layer_lines(architecture.layers, 14);
 }
 
-/// Unlimited is null in JSON; zero would mean that no other frame is seen.
+/// The same number in JSON. null means all frames; 0 means that no other frame is used.
 Json frames_json(const std::optional<std::size_t>& frames) {
   return frames ? Json(*frames) : Json();
 }
 
-/// A window of 0 or 1 frames changes nothing.
+/// The smoothing of the output in words. A window of 0 or 1 frames does not smooth.
 std::string smoothing_text(const Smoothing& how) {
   if (how.window < 2) return "no smoothing";
   return fmt::format("smoothed over {} frames (order {}{})", how.window, how.order,
                      how.causal ? ", causal" : "");
 }
 
-/// Names from a model's file are passed through shown(), since they may hold any text.
+/// A list of names. A model's file may contain any text as a name, so shown() removes control
+/// characters.
 std::string name_list(const std::vector<std::string>& names) {
   std::string out;
   for (const std::string& name : names) out += (out.empty() ? "" : ", ") + shown(name);
@@ -112,31 +114,31 @@ std::string joint_lines(std::string_view name, const std::vector<std::string>& j
   return fact_line(name, fmt::format("{}: {}", counted(joints.size(), "joint"), name_list(joints)));
 }
 
-/// A text member of an object from a file that any program may have written, on one line. Empty if
-/// the member is no text.
+/// The member `key` as text on one line. Empty if the member is no text, since any program may have
+/// written the object.
 std::string text_of(const Json& object, const char* key) {
   const auto found = object.find(key);
   if (found == object.end() || !found->is_string()) return "";
-  // A line end in a citation would break the columns.
+  // A line end within the text would break the columns.
   std::string text = found->get<std::string>();
   std::replace(text.begin(), text.end(), '\n', ' ');
   return text;
 }
 
-/// Empty if the member is no number. Numbers in the training's JSON may have been written by any
-/// program.
+/// The member `key` as a number. Empty if the member is no number, since any program may have
+/// written the object.
 std::string number_of(const Json& object, const char* key) {
   const auto found = object.find(key);
   return found != object.end() && found->is_number() ? fmt::format("{:g}", found->get<double>())
                                                      : "";
 }
 
-/// The data sets that a model was trained on. A missing licence is stated, since it limits the use
-/// of the model.
+/// The lines about the data sets with which a model was trained. A missing licence is stated,
+/// because it limits the use of the model.
 std::string data_lines(const Json& data) {
   std::string text;
-  // `data` should be an array of objects. Anything else is skipped: the description must not fail
-  // on it.
+  // `data` should be an array of objects. Anything else is skipped, so that the model can still be
+  // described.
   for (const Json& one : data.is_array() ? data : Json::array()) {
     if (!one.is_object()) continue;
     std::string about = text_of(one, "name");
@@ -150,7 +152,7 @@ std::string data_lines(const Json& data) {
   return text;
 }
 
-/// The lines about a training, and about the model that it went on from.
+/// The lines about a training and, if it continued the training of another model, about that model.
 std::string training_lines(const Json& training) {
   std::string text = data_lines(training.value("data", Json::array()));
   std::string how;
@@ -159,15 +161,15 @@ std::string training_lines(const Json& training) {
     if (!value.empty()) how += fmt::format("{}{} {}", how.empty() ? "" : ", ", key, value);
   }
   if (!how.empty()) text += fact_line("training", how);
-  // "from" is set if training continued from another model. The licences of that model's data apply
-  // too, so they are listed as well.
+  // The training continued from another model if "from" is set. The licences of that model's data
+  // apply, too, so they are listed.
   const auto from = training.find("from");
   if (from == training.end() || !from->is_object()) return text;
   return text + fact_line("continued", "from a model of the same method") +
          data_lines(from->value("data", Json::array()));
 }
 
-/// One line for each metric. The value is printed as its JSON, since metrics are free in form.
+/// One line for each metric. Metrics may have any form, so their JSON is printed.
 std::string metric_lines(const Json& metrics) {
   std::string text;
   for (const auto& [name, value] : metrics.items()) {
@@ -176,8 +178,7 @@ std::string metric_lines(const Json& metrics) {
   return text;
 }
 
-/// An object of a text that may be damaged: the parser is told to throw nothing, and any other
-/// result becomes {}.
+/// Parses a JSON object. Damaged text or another kind of value gives {}.
 Json parsed_object(const std::string& text) {
   Json out = Json::parse(text, nullptr, false);
   return out.is_object() ? out : Json::object();
@@ -196,13 +197,12 @@ Json smoothing_json(const Smoothing& how) {
   return {{"window", how.window}, {"order", how.order}, {"causal", how.causal}};
 }
 
-/// The height of a body at rest, m, from its lowest joint to its highest.
-/// The sum of the offsets along y from the root. Rotations do not matter: at rest all of them are
-/// the identity.
+/// The height of a body at rest, m, from its lowest joint to its highest. At rest all rotations are
+/// the identity, so the height of a joint is the sum of the offsets along y.
 double height_at_rest(const Skeleton& skeleton) {
   std::vector<double> heights;
   for (std::size_t j = 0; j < skeleton.joints(); ++j) {
-    // Parents stand before their children, so a parent's height is already known.
+    // A parent stands before its children, so its height is already known here.
     const int parent = skeleton.parents[j];
     heights.push_back(parent < 0 ? 0.0
                                  : heights[static_cast<std::size_t>(parent)] +
@@ -212,7 +212,7 @@ double height_at_rest(const Skeleton& skeleton) {
   return *high - *low;
 }
 
-/// The names are those of the file format (docs/formats/model.md).
+/// The name of the inputs in the file format (docs/formats/model.md).
 std::string_view channels_name(PoseInputs inputs) {
   return inputs == PoseInputs::dip ? "dip" : "ours";
 }
@@ -276,7 +276,7 @@ Json model_json(const FuseModel& model) {
           {"networks", {{"net", network_json(model.architecture)}}}};
 }
 
-/// The text about a model that cleans a Kinect.
+/// The text about a model that cleans the joints of a Kinect.
 std::string model_text(const DenoiseModel& model) {
   std::string text = model_line(model.facts);
   text += fact_line("rate", fmt::format("{:g} Hz", model.layout.rate_hz));
@@ -292,7 +292,7 @@ std::string model_text(const DenoiseModel& model) {
                                             steadying.bones ? ", bones of constant length" : ""));
 }
 
-/// The JSON about a model that cleans a Kinect.
+/// The JSON about a model that cleans the joints of a Kinect.
 Json model_json(const DenoiseModel& model) {
   Json networks{{"net", network_json(model.architecture)}};
   if (model.second) networks["second"] = network_json(*model.second);
@@ -311,32 +311,31 @@ Json model_json(const DenoiseModel& model) {
         {"bones", model.steadying.bones}}}};
 }
 
-/// The members that every model has.
+/// The JSON members that every model has.
 Json facts_json(const std::string& path, std::string_view bytes, const ModelFacts& facts) {
   return {{"file", path},       {"kind", "model"},        {"bytes", bytes.size()},
           {"task", facts.task}, {"method", facts.method}, {"software", facts.software}};
 }
 
-/// A model as text and as JSON. `text` and `members`: the parts that depend on its task.
-/// The order is that of the text: facts, then the task's part, then training and metrics.
+/// Describes a model as text and as JSON. `text` and `members` are the parts that depend on the
+/// model's task. They stand between the facts and the training.
 Description described(const std::string& path, std::string_view bytes, const ModelFacts& facts,
                       const std::string& text, const Json& members) {
   const Json training = parsed_object(facts.training), metrics = parsed_object(facts.metrics);
   Json json = facts_json(path, bytes, facts);
-  // update() keeps the order of the first call, so the common members come first in each task's
-  // JSON.
+  // update() appends new members, so the members that every model has come first.
   json.update(members);
   json.update({{"training", training}, {"metrics", metrics}});
   return {path + "\n" + text + training_lines(training) + metric_lines(metrics), json_text(json)};
 }
 
-/// Reads, describes and then builds the model as its verb would. A model that can't be used fails
-/// although it could be described.
+/// Reads and describes a model, then builds it as its verb would. Fails if the model can't be
+/// built, even if it could be described.
 template <class Solver>
 Result<Description> described_by(auto read, const std::string& path, std::string_view bytes) {
   auto model = KA_TRY(read(bytes, path));
   Description out = described(path, bytes, model.facts, model_text(model), model_json(model));
-  // make() takes the model over, so the description is made before it.
+  // make() takes the model, so the description is made before.
   KA_TRY(Solver::make(std::move(model)).map_error(in_file(path)));
   return out;
 }
@@ -344,7 +343,8 @@ Result<Description> described_by(auto read, const std::string& path, std::string
 }  // namespace
 
 Result<Description> describe_model(const std::string& path, std::string_view bytes) {
-  // The task decides the reader. A model of any other task is read as one that cleans skeletons.
+  // The task of the model decides which function reads it. A model with any other task is read as
+  // one that cleans skeletons.
   const std::string task = KA_TRY(task_of_model(bytes, path));
   if (task == "pose") return described_by<PoseSolver>(read_pose_model, path, bytes);
   if (task == "fuse") return described_by<Fuser>(read_fuse_model, path, bytes);

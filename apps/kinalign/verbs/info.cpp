@@ -13,8 +13,8 @@ namespace kinalign {
 
 namespace {
 
-/// The options of `kinalign info`. A stream's flags are needed for files that do not say how to
-/// read them, such as a table without a known layout.
+/// The options of `kinalign info`. The flags that describe a stream are needed for files that do
+/// not state how to read them, such as a table without a known layout.
 struct Info {
   std::vector<std::string> file;
   StreamFlags stream;
@@ -31,29 +31,29 @@ Usage describe_info(Info& o) {
                         {},
                         "info reads one file; kinalign check reads several"}};
   usage.flags = o.stream.fields();
-  // A wrong --select is wrong use, found before a file is opened.
+  // A wrong --select is wrong use, which is found here before a file is opened.
   usage.check = [&o](const Common&, const Sources&) {
     return o.stream.stream({}).map([](const StreamOptions&) {});
   };
   return usage;
 }
 
-/// Describes a manifest or a stream's file, after reading it to the end.
+/// Reads a manifest's files or a stream's file to the end, and describes them.
 Result<Description> describe_input(const Info& o, Call& call, const std::string& path,
                                    Names names) {
   const Input input =
       KA_TRY(open_input(call.surroundings.files, path, o.stream, call.console.progress()));
-  // Only the open stream tells which flags its reader uses.
+  // The open stream tells which flags its reader uses, so the flags are checked after opening.
   if (!input.manifest) {
     KA_TRY(o.stream.check_use(path, &input.recording.streams.front(), call));
   }
-  // Some findings are known only after the last row, for example those about values.
+  // Some findings, for example about values, are known only after the last row.
   KA_TRY(read_through(input.recording, call.console.progress()));
   return describe_recording(path, input.recording, names);
 }
 
-/// Chooses the description by the kind of the file. Files that describe themselves take no flags of
-/// a stream.
+/// Chooses the description by the kind of the file. Files that describe themselves allow no flags
+/// that describe a stream.
 Result<Description> describe(const Info& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& path = o.file.front();
@@ -66,7 +66,8 @@ Result<Description> describe(const Info& o, Call& call) {
   switch (kind) {
     case FileKind::recording: {
       const auto source = KA_TRY(
-          // Devices::surveyed skips fitting the clocks: the survey needs none of them.
+          // The description does not need the devices' clocks, so Devices::surveyed leaves them
+          // out.
           RecordingSource::open(files, path, RecordingSource::Devices::surveyed, {}, progress));
       return describe_survey(path, source->survey(), source->parts());
     }
@@ -79,7 +80,7 @@ Result<Description> describe(const Info& o, Call& call) {
       return describe_model(path, KA_TRY(read_whole(files, path, most_model_bytes)));
     case FileKind::manifest:
     case FileKind::stream:
-    case FileKind::unknown:  // opening it fails with the reason, unless --layout states its format
+    case FileKind::unknown:  // opening fails with the reason, unless --layout states the format
       break;
   }
   return describe_input(o, call, path, names);
@@ -87,7 +88,7 @@ Result<Description> describe(const Info& o, Call& call) {
 
 Result<int> run(Info& o, Call& call) {
   const Description found = KA_TRY(describe(o, call));
-  // Names in files can hold control characters, which a terminal would obey.
+  // Names in files may contain control characters, which a terminal would obey.
   call.console.print(harmless(found.text));
   call.console.print_json(found.json);
   return 0;

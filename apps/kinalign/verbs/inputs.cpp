@@ -23,7 +23,7 @@ namespace kinalign {
 Result<std::pair<std::string, std::string>> split_pair(const std::string& text,
                                                        std::string_view expected) {
   const auto equals = text.find('=');
-  // An empty name or value is a typing error in every flag of this form, so both are refused.
+  // An empty name or value is a typing error for every flag of this form.
   if (equals == 0 || equals == std::string::npos || equals + 1 == text.size()) {
     return Failure(Error{"", 0, std::string(expected), "'" + shown(text) + "'"});
   }
@@ -32,15 +32,15 @@ Result<std::pair<std::string, std::string>> split_pair(const std::string& text,
 
 Result<Manifest> load_manifest(FileSystem& files, const std::string& path,
                                const AlignOptions& unsaid) {
-  // A manifest is written by hand and short. The limit refuses a wrong file before it fills the
-  // memory.
+  // People write manifests by hand, so a manifest is short. The limit refuses a wrong file before
+  // it fills the memory.
   constexpr std::size_t longest = std::size_t{1} << 20;
   const std::string text = KA_TRY(read_whole(files, path, longest));
   return read_manifest(text, path, unsaid);
 }
 
 Result<Manifest> recorded_manifest(const RecordingSurvey& survey, const std::string& path) {
-  // This error names the cause. A manifest without streams would not.
+  // An empty recording gets its own error, which names the cause.
   if (survey.messages == 0) {
     return Failure(Error{path, 0, "a recording in which a message can be read", "none"});
   }
@@ -50,14 +50,13 @@ Result<Manifest> recorded_manifest(const RecordingSurvey& survey, const std::str
   });
 }
 
-/// Options of alignment are left out: verbs that read a single stream do not align it. `select` is
-/// a flag with one column and value.
+/// The flags of a single stream. Options of alignment are left out, because verbs that read a
+/// single stream do not align it. `select` is a flag of the form COLUMN=VALUE.
 Fields StreamFlags::fields() {
   constexpr std::array<std::string_view, 7> of_alignment{
       "clock", "offset_ms", "drift_ppm", "interval_ms", "root_node", "mounting", "select"};
   Fields out = describe(options);
-  // `describe` gives the options in one list for the manifest and for flags, so a new option is a
-  // flag at once.
+  // describe() lists the options for manifests and for flags, so each new option becomes a flag.
   std::erase_if(out, [&](const Field& field) {
     return std::find(of_alignment.begin(), of_alignment.end(), field.name) != of_alignment.end();
   });
@@ -70,8 +69,8 @@ Result<void> StreamFlags::check_use(const std::string& path, const RecordedStrea
   for (const auto& [name, source] : call.sources) {
     const auto is = [&name = name](std::string_view other) { return name == other; };
     if (source != Source::flag) continue;
-    // A manifest, a take or a recording states how its streams are read. Every flag of a stream is
-    // then refused.
+    // A manifest, a take or a recording states how its streams are read, so all flags that describe
+    // a stream are refused.
     if (stream == nullptr) {
       StreamFlags mine;
       const Fields own = mine.fields();
@@ -80,8 +79,8 @@ Result<void> StreamFlags::check_use(const std::string& path, const RecordedStrea
       return call.console.refuse(
           {flag_of(name), 0, "a stream's own file", shown(path) + ", which already states this"});
     }
-    // A stream's own kind decides which options its reader ignores. An ignored flag is wrong use,
-    // not a silent no-op.
+    // The reader of a stream ignores some options, depending on the kind of stream. A flag that
+    // would be ignored is wrong use.
     const auto useless = useless_options(*stream);
     if (std::none_of(useless.begin(), useless.end(), is)) continue;
     return call.console.refuse({flag_of(name), 0, "a file that can use this flag",
@@ -92,7 +91,7 @@ Result<void> StreamFlags::check_use(const std::string& path, const RecordedStrea
 
 Result<StreamOptions> StreamFlags::stream(const std::vector<std::string>& paths) const {
   StreamOptions out = options;
-  // The name appears in messages and in arrays of an NPZ.
+  // The name appears in messages and in the names of an NPZ's arrays.
   if (out.name.empty()) out.name = "stream";
   for (const std::string& path : paths) out.files.push_back({path, ""});
   for (const std::string& one : select) {
@@ -103,12 +102,13 @@ Result<StreamOptions> StreamFlags::stream(const std::vector<std::string>& paths)
   return out;
 }
 
-/// Opens a manifest's recording, or a single stream's file as a recording of one stream.
+/// Opens the recording that a manifest describes, or the file of a single stream as a recording
+/// with one stream.
 Result<Input> open_input(FileSystem& files, const std::string& path, const StreamFlags& flags,
                          const Progress& progress) {
   Input input;
   if (path.ends_with(".toml")) {
-    // Paths in a manifest are relative to its own folder, not to the current one.
+    // Paths in a manifest are relative to the manifest's folder and not to the current folder.
     input.manifest = KA_TRY(load_manifest(files, path));
     input.recording =
         KA_TRY(open_recording(files, *input.manifest, std::string(folder(path)), {progress}));
@@ -127,8 +127,8 @@ int code_of(const Findings& findings) {
 }
 
 Result<void> check_take_name(const std::string& out) {
-  // The new take is HDF5 under any name. These three endings would promise a file that other
-  // programs can't open.
+  // A take is always an HDF5 file. With one of these three endings other programs would try to open
+  // it and fail.
   for (const std::string_view ending : {".npz", ".csv", ".bvh"}) {
     if (!out.ends_with(ending)) continue;
     return Failure(Error{
@@ -147,9 +147,9 @@ std::string name_advice(const Error& error) {
 Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const std::string& a,
                                                       const std::string& b) {
   InputFile one = KA_TRY(InputFile::open(files, a)), other = KA_TRY(InputFile::open(files, b));
-  // Both files come in pieces whose ends need not meet. Only the common length of both rests is
-  // compared in a turn.
-  std::string_view p, q;  // the unread rest of both pieces, whose lengths may differ
+  // Both files are read in pieces, which may end at different places. Each turn compares as many
+  // bytes as both pieces still have.
+  std::string_view p, q;  // the bytes of each piece that are not compared yet
   for (std::uint64_t at = 0;;) {
     if (p.empty()) p = KA_TRY(one.next());
     if (q.empty()) q = KA_TRY(other.next());
@@ -158,7 +158,8 @@ Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const s
     const auto differ = std::mismatch(p.begin(), p.begin() + both, q.begin());
     const auto same = static_cast<std::size_t>(differ.first - p.begin());
     at += same;
-    // `both` is 0 if exactly one file has ended: the shorter file is a prefix of the longer one.
+    // If only one file has ended, `both` is 0, and the shorter file is the beginning of the longer
+    // one.
     if (same < both || both == 0) return std::optional(at);
     p.remove_prefix(both);
     q.remove_prefix(both);
@@ -167,8 +168,7 @@ Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const s
 
 Result<void> keep_inputs(const std::string& out, const std::vector<std::string>& inputs) {
   for (const std::string& input : inputs) {
-    // same_file() follows links and compares the files themselves, so another spelling of the path
-    // is found too.
+    // same_file() follows links, so it also finds the same file under another path.
     if (same_file(out, input)) {
       return Failure(Error{out, 0, "a name other than those of the input files",
                            "'" + shown(file_name(input)) + "', an input file"});
@@ -179,24 +179,24 @@ Result<void> keep_inputs(const std::string& out, const std::vector<std::string>&
 
 namespace {
 
-/// The one spelling of a path: its folder without links, and the file's own name, which may be a
-/// link. A folder that does not exist is only normalised.
+/// A path in one spelling: the real folder without links, and the file's own name, even if the file
+/// is a link. If the folder does not exist, the path is only cleaned of "." and "..".
 std::string place_of(const std::string& path) {
   std::error_code fault;
   const std::filesystem::path whole = std::filesystem::absolute(path, fault);
   if (fault) return path;  // the current folder was removed
   const auto parent = std::filesystem::canonical(whole.parent_path(), fault);
-  // The file's own name is not resolved: a link's name, not its target, is what the take states.
+  // If the file is a link, the take states the name of the link and not that of its target.
   return ((fault ? whole.parent_path().lexically_normal() : parent) / whole.filename()).string();
 }
 
-/// The folder relative to the current one: "demo/"; "" for the current folder itself.
+/// The folder's path relative to the current folder: "demo/". Empty for the current folder.
 std::string from_here(const std::string& folder) {
   std::error_code fault;
   const auto here = std::filesystem::canonical(".", fault);
   if (fault) return folder;
   const std::string near = std::filesystem::path(folder).lexically_relative(here).string();
-  // The result ends in '/', so that it can be put in front of a name.
+  // The path ends in '/', so that a file's name can be appended.
   if (near.empty() || near == ".") return near.empty() ? folder : "";
   return near.ends_with('/') ? near : near + "/";
 }
@@ -206,20 +206,20 @@ std::string from_here(const std::string& folder) {
 std::string cut_common_folder(Manifest& manifest) {
   const std::vector<std::string*> paths = paths_in(manifest);
   if (paths.empty()) return "";
-  // A relative result is wanted only if the user typed relative paths everywhere. Messages then
-  // show what was typed.
+  // If the user typed only relative paths, the result is relative, too, so that messages show what
+  // was typed.
   const bool relative = std::none_of(
       paths.begin(), paths.end(), [](const std::string* path) { return path->starts_with('/'); });
   for (std::string* path : paths) *path = place_of(*path);
   std::string common(folder(*paths.front()));
   for (const std::string* path : paths) {
-    // The common part ends at a '/', so "take1/" and "take10/" share only their parent.
+    // The common part ends at a '/', so "take1/" and "take10/" share only the folder above them.
     while (!path->starts_with(common)) {
       common.pop_back();
       common = folder(common);
     }
   }
-  // Files without a common folder are named alone: a take must not contain paths of one machine.
+  // If the files share no folder, their paths become absolute.
   if (common == "/") return "";
   for (std::string* path : paths) path->erase(0, common.size());
   return relative ? from_here(common) : common;

@@ -9,15 +9,15 @@ namespace kinalign {
 
 namespace {
 
-/// Either new_lab_key is set, or both others. An absent `node` differs from node 0, which is a
-/// legal id.
+/// The options of `kinalign node-key`: either new_lab_key is set, or lab_key and node are. `node`
+/// is an optional, because 0 is a valid id.
 struct NodeKeyFlags {
   std::string new_lab_key, lab_key;
   std::optional<std::int64_t> node;
 };
 
-/// Refuses an empty file name, which an unset shell variable gives.
-/// `given` tells an empty value from a flag that was not given.
+/// Refuses an empty file name, which comes from a shell variable that is not set. `given` tells
+/// whether the flag was given at all.
 Result<void> check_named(const NodeKeyFlags& o, const Sources& given) {
   const bool drawn = given.contains("new_lab_key") && o.new_lab_key.empty();
   const bool read = given.contains("lab_key") && o.lab_key.empty();
@@ -25,7 +25,7 @@ Result<void> check_named(const NodeKeyFlags& o, const Sources& given) {
   return Failure(Error{drawn ? "--new-lab-key" : "--lab-key", 0, "a file's name", "nothing"});
 }
 
-/// --new-lab-key makes the lab's key only, so no other flag may be given.
+/// --new-lab-key makes only the key of a lab, so no other flag may be given.
 Result<void> check_drawn(const NodeKeyFlags& o, const Common& common) {
   if (!common.out.empty()) {
     return Failure(Error{"--out", 0,
@@ -39,7 +39,7 @@ Result<void> check_drawn(const NodeKeyFlags& o, const Common& common) {
             "both"});
 }
 
-/// A node's key needs the lab's key and the node's id.
+/// The key of a node needs the lab's key and the node's id.
 Result<void> check_node(const NodeKeyFlags& o) {
   if (o.lab_key.empty() && !o.node) {
     return Failure(
@@ -68,23 +68,23 @@ Usage describe_node_key(NodeKeyFlags& o) {
   return usage;
 }
 
-/// Makes the lab's key, or derives a node's key from it and prints or writes it.
+/// Makes the key of a lab, or derives a node's key from it and prints or writes that.
 Result<int> run_node_key(NodeKeyFlags& o, Call& call) {
   FileSystem& files = call.surroundings.files;
-  // write_key() never replaces a file, because a node whose key is lost must be flashed again.
+  // write_key() never replaces a file: if a key is lost, all its nodes must be flashed again.
   if (!o.new_lab_key.empty()) {
     KA_TRY(write_key(files, o.new_lab_key, KA_TRY(new_lab_key())));
     call.console.print(o.new_lab_key + ": a new lab key; keep a copy where only you can read it\n");
     return 0;
   }
-  // The advice is about the lab's key file only. It is removed after reading, so a full disk does
-  // not get it.
+  // The advice is only about reading the lab's key, so it is removed before the node's key is
+  // written.
   call.console.if_it_fails(key_advice);
   const LabKey lab = KA_TRY(read_lab_key(files, o.lab_key));
   call.console.if_it_fails({});
   const MacKey key = node_key(lab, static_cast<std::uint32_t>(*o.node));
   if (call.common.out.empty()) {
-    // The key goes to stdout by put(), so that --quiet can't swallow it and a script can read it.
+    // put() prints the key even with --quiet, so that a script can read it.
     call.console.put(key_text(key) + "\n");
     return 0;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Verbs that print a page about the program itself.
+// The verbs `completion` and `man`, which print a page about the program itself.
 #include "apps/cli/console.h"
 #include "apps/cli/help.h"
 #include "apps/kinalign/verbs.h"
@@ -8,7 +8,8 @@ namespace kinalign {
 
 namespace {
 
-/// One word: the shell. Its legal values stand in the usage, so they are completed too.
+/// The options of `kinalign completion`: one word, the shell. The usage lists the allowed words, so
+/// that they are completed, too.
 struct Completion {
   std::vector<std::string> shell;
 };
@@ -20,19 +21,19 @@ Usage describe_completion(Completion& o) {
 }
 
 Result<int> run_completion(Completion& o, Call& call) {
-  // The script is complete: it lists all verbs and flags and does not call kinalign when it runs.
+  // The script contains all verbs and flags, so it does not call kinalign when it runs.
   call.console.put(completion_script(o.shell.front(), call.verbs));
   return 0;
 }
 
-/// `man` has no options. The page is made from the same descriptions as --help, so both always
-/// agree.
+/// The options of `kinalign man`, which has none. The man page is made from the same descriptions
+/// as --help, so both always agree.
 struct Man {};
 
 Usage describe_man(Man&) { return {}; }
 
 Result<int> run_man(Man&, Call& call) {
-  // put() ignores --quiet: the page is the result itself.
+  // The page is the result, so put() prints it even with --quiet.
   call.console.put(man_page(call.verbs));
   return 0;
 }

@@ -15,14 +15,13 @@ namespace kinalign {
 
 namespace {
 
-/// The key of a manifest that means the same as a flag, and the flag without which that flag has no
+/// A flag, the key of a manifest that means the same, and the flag without which this flag has no
 /// meaning.
 struct Twin {
   std::string_view flag, key, needs;
 };
 
-// The order of the table is that of the error messages: the first flag that does not fit is
-// reported.
+// The order matters for errors: the first flag in the table that does not fit is reported.
 constexpr std::array<Twin, 15> twins{
     {{"mocap", "file in [stream.mocap]", ""},
      {"kinect", "file in [stream.kinect]", ""},
@@ -40,14 +39,14 @@ constexpr std::array<Twin, 15> twins{
      {"rotation_y_deg", "rotation_y_deg in [space.kinect]", "kinect"},
      {"joint", "joints in [space.kinect]", "kinect"}}};
 
-/// True only for the command line: a setting from a file or the environment never contradicts a
-/// manifest.
+/// True if the flag was given on the command line. A setting from a file or the environment never
+/// contradicts a manifest.
 bool is_given(std::string_view flag, const Sources& given) {
   const auto found = given.find(std::string(flag));
   return found != given.end() && found->second == Source::flag;
 }
 
-/// Two streams of one name could not be told apart in the take.
+/// Fails if two streams have the same name: the take could not tell them apart.
 Result<void> check_stream_names(const Manifest& manifest) {
   std::vector<std::string> names;
   for (const StreamOptions& stream : manifest.streams) {
@@ -59,13 +58,13 @@ Result<void> check_stream_names(const Manifest& manifest) {
   return {};
 }
 
-/// The options of --space with the pairs of --joint.
+/// The options of --space, with the pairs of joints from --joint.
 Result<SpaceOptions> space_of(const QuickFlags& flags) {
   SpaceOptions space = flags.space;
   for (const std::string& joint : flags.joints) {
     const auto pair = KA_TRY(split_pair(joint, "KINECT=MOCAP").map_error(in_file("--joint")));
-    // Only the Kinect's side must be unique. Two joints of the Kinect may correspond to one joint
-    // of the mocap.
+    // Each joint of the Kinect may be given once. Two of them may correspond to the same joint of
+    // the mocap.
     if (!space.joints.insert(pair).second) {
       return Failure(
           Error{"--joint", 0, "each joint of the Kinect once", shown(pair.first) + " twice"});
@@ -74,11 +73,10 @@ Result<SpaceOptions> space_of(const QuickFlags& flags) {
   return space;
 }
 
-/// All nodes make one stream, "imu", with a file for each.
+/// All nodes make one stream, "imu", with one file for each node.
 Result<StreamOptions> nodes_of(const QuickFlags& flags) {
   StreamOptions nodes;
-  // The name "imu" is fixed, unlike the names of --points: alignment puts all nodes into one group
-  // of the take.
+  // The user can't choose this name, because alignment puts all nodes into one group of the take.
   nodes.name = "imu";
   nodes.layout = flags.imu_layout;
   nodes.root_node = flags.root_node;
@@ -89,23 +87,22 @@ Result<StreamOptions> nodes_of(const QuickFlags& flags) {
   return nodes;
 }
 
-/// The kinds of streams, as indices of RecordedStream::data.
-/// A variant's index is compared instead of its type, because one flag may allow two kinds.
+/// The kinds of streams, as indices of the variant RecordedStream::data. Indices are compared and
+/// not types, because a flag may allow two kinds.
 constexpr std::size_t clip = 0, points = 1, nodes = 2;
 
-/// The kind of content that a flag's file must have. `expected`: its name in messages.
+/// The kinds of content that a flag's file may have. `expected`: their name in messages.
 struct Wanted {
   std::string flag, path;
   std::vector<std::size_t> kinds;
   std::string expected;
 };
 
-/// The files of all flags, in the order in which quick_manifest() lists them.
-/// The order must be that of quick_manifest(): check_kinds() pairs the flags with streams by their
-/// position.
+/// The files of all flags. The order must be that of quick_manifest(), because check_kinds()
+/// compares the flags and the streams one by one.
 std::vector<Wanted> wanted_kinds(const QuickFlags& flags) {
   const std::vector<std::size_t> bodies{clip, points};
-  // A mocap file may be a skeleton or points. A Kinect is never a skeleton.
+  // A mocap file may be a skeleton or points. A Kinect file is always points.
   std::vector<Wanted> out{{"--mocap", flags.mocap, bodies, "a skeleton's file or points"}};
   if (!flags.kinect.empty()) out.push_back({"--kinect", flags.kinect, {points}, "points"});
   const auto add = [&out](const std::string& flag, const std::string& pair,
@@ -120,7 +117,7 @@ std::vector<Wanted> wanted_kinds(const QuickFlags& flags) {
 
 }  // namespace
 
-/// --space is "fit" without the flag; a manifest has another default.
+/// --space has the default "fit" here; in a manifest it has another default.
 Fields QuickFlags::fields() {
   space.method = "fit";
   return {{"mocap", "the reference: a BVH, or a file of points", &mocap},
@@ -149,8 +146,8 @@ Fields QuickFlags::fields() {
 Result<void> refuse_with_input(const std::string& path, const Sources& given) {
   for (const Twin& twin : twins) {
     if (!is_given(twin.flag, given)) continue;
-    // A recording has streams already, so the advice is to write a recording.toml that combines it
-    // with further files.
+    // A recording has its own streams. The advice is to combine it with further files in a
+    // recording.toml.
     if (path.ends_with(".mcap")) {
       const std::string key(twin.key.substr(0, twin.key.find('.')));
       return Failure(Error{flag_of(twin.flag), 0,
@@ -166,15 +163,13 @@ Result<void> refuse_with_input(const std::string& path, const Sources& given) {
 
 Result<void> refuse_alone(const QuickFlags& flags, const Sources& given) {
   for (const Twin& twin : twins) {
-    // An empty `needs` marks a flag that stands alone. The check for --mocap itself is in
-    // check_use() of align.cpp.
+    // If `needs` is empty, the flag needs no other flag. check_use() in align.cpp checks --mocap.
     if (!is_given(twin.flag, given) || twin.needs.empty() || is_given(twin.needs, given)) continue;
     return Failure(Error{flag_of(twin.flag), 0,
                          flag_of(twin.needs) + ", to which this flag applies",
                          "no " + flag_of(twin.needs)});
   }
-  // The remaining two rules depend on a value and not only on a flag's presence, so the table can't
-  // state them.
+  // The table can't state the next two rules, because they depend on the value of a flag.
   if (is_given("rotation_y_deg", given) && flags.space.method != "paper") {
     return Failure(Error{"--rotation-y-deg", 0, "--space paper, to which this flag applies",
                          "--space " + flags.space.method});
@@ -188,7 +183,7 @@ Result<void> refuse_alone(const QuickFlags& flags, const Sources& given) {
 
 Result<Manifest> quick_manifest(const QuickFlags& flags) {
   Manifest manifest;
-  // The copy of the options carries the layout and, for mocap, start, unit and axis.
+  // `stream` is a copy of options: the layout and, for mocap, also start, unit and axis.
   const auto add = [&manifest](StreamOptions stream, std::string name, std::string file) {
     stream.name = std::move(name);
     stream.files = {{std::move(file), ""}};
@@ -199,8 +194,8 @@ Result<Manifest> quick_manifest(const QuickFlags& flags) {
   kinect.layout = flags.kinect_layout;
   if (!flags.kinect.empty()) {
     add(kinect, "kinect", flags.kinect);
-    // The space is set only for a Kinect: a transform of a stream that does not exist is an error
-    // of the manifest.
+    // The space is set only if there is a Kinect: a manifest must not move a stream that does not
+    // exist.
     manifest.spaces["kinect"] = KA_TRY(space_of(flags));
   }
   for (const std::string& one : flags.points) {
@@ -216,7 +211,7 @@ Result<Manifest> quick_manifest(const QuickFlags& flags) {
 
 Result<void> check_kinds(const QuickFlags& flags, const Recording& recording) {
   const std::vector<Wanted> wanted = wanted_kinds(flags);
-  // Opening makes one stream for each file of nodes, so both lists have the same order and length.
+  // Opening makes one stream for each file, so both lists have the same order and length.
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     const RecordedStream& stream = recording.streams[i];
     const auto& kinds = wanted[i].kinds;

@@ -34,7 +34,7 @@ Usage describe_rebuild(Rebuild& o) {
     if (o.inputs.empty()) {
       return Failure(Error{"--inputs", 0, "the folder of the take's inputs", "none"});
     }
-    // Exactly one of -o and --verify is allowed. The condition is true if both or neither are
+    // Exactly one of -o and --verify must be given. The condition is true if both or neither were
     // given.
     if (o.verify != common.out.empty()) {
       return Failure(Error{"-o", 0, "either the new take's file name or --verify",
@@ -46,37 +46,34 @@ Usage describe_rebuild(Rebuild& o) {
   return usage;
 }
 
-/// The result of --verify. Without difference and failure: the take was made again with the same
-/// bytes.
-/// The members are set by compare(): at most one of `difference` and `failure`; `changed` explains
-/// either.
+/// The result of --verify. At most one of `difference` and `failure` is set. If neither is set, the
+/// new take has the same bytes as the old one.
 struct Comparison {
-  std::optional<std::uint64_t> difference;  // the first byte that differs
+  std::optional<std::uint64_t> difference;  // the position of the first byte that differs
   std::optional<Error> failure;             // the reason why the take can't be made again
-  std::vector<std::string> changed;         // inputs with other bytes than in the take
+  std::vector<std::string> changed;         // inputs whose bytes have changed since
   bool same() const { return !difference && !failure; }
 };
 
-/// Makes the take again in a temporary folder and compares the bytes. A failure that comes from the
-/// inputs is a result; one of this machine is an error.
+/// Makes the take again in a temporary folder and compares the bytes. A failure caused by the
+/// inputs is part of the result; a failure of this machine is an error.
 Result<Comparison> compare(const std::string& take, const Result<Recording>& recording,
                            const Origin& origin, Call& call) {
   Comparison out;
   if (!recording) {
-    // Ctrl-C also makes opening fail. It must end the verb and must not be reported as a
-    // difference.
+    // After Ctrl-C opening fails, too. The verb must then end and not report a difference.
     if (interrupted()) return Failure(recording.error());
     out.failure = recording.error();
     return out;
   }
   out.changed = changed_inputs(origin, *recording);
-  // The take is made as a file, not in memory, because HDF5's bytes are what is compared.
+  // HDF5 must write a real file, because the bytes of the file are compared.
   const Scratch scratch = KA_TRY(Scratch::make());
   const std::string again = scratch.name() + "/take.h5";
   auto made = align_to_file(call, *recording, origin.parameters, {again, Overwrite::no});
   if (!made) {
-    // A full disk of the temporary folder says nothing about the take, so it is an error of the
-    // verb.
+    // If the disk of the temporary folder is full, that says nothing about the take, so it is an
+    // error of the verb.
     const bool ours = interrupted() || made.error().file.starts_with(scratch.name());
     if (ours) return Failure(std::move(made).error());
     out.failure = std::move(made).error();
@@ -86,7 +83,8 @@ Result<Comparison> compare(const std::string& take, const Result<Recording>& rec
   return out;
 }
 
-/// A line for both outputs. The name comes from the take, so it is made harmless for a terminal.
+/// The text about a changed input. harmless() removes control characters, since the name comes from
+/// the take.
 std::string changed_line(const std::string& name) {
   return harmless(name + " is not the file that the take was made from");
 }
@@ -98,7 +96,7 @@ int say(const std::string& take, const Comparison& found, const Origin& origin, 
                               {"software", origin.software},
                               {"changed_inputs", found.changed}};
   std::string text = fmt::format("{}: all bytes are equal\n", take);
-  // `difference` and `failure` never stand together, since a take that was not made again can't be
+  // `difference` and `failure` are never both set: only a take that could be made again is
   // compared.
   if (found.difference) {
     text = fmt::format("{}: bytes differ from byte {} on\n", take, *found.difference);
@@ -109,8 +107,8 @@ int say(const std::string& take, const Comparison& found, const Origin& origin, 
     json["failure"] = to_string(*found.failure);
   }
   for (const std::string& name : found.changed) text += "  " + changed_line(name) + "\n";
-  // Equal inputs leave two explanations: the take's file was edited, or the other version of the
-  // program computes differently.
+  // If all inputs are the same, either the take's file was edited or another version of the program
+  // computes other values.
   if (found.difference && found.changed.empty()) {
     text += fmt::format(
         "  the inputs are the same; the take was changed, or this version differs from {}\n",
@@ -121,12 +119,12 @@ int say(const std::string& take, const Comparison& found, const Origin& origin, 
   return found.same() ? 0 : 1;
 }
 
-/// Makes the take again and writes it. Changed inputs are warnings.
+/// Makes the take again and writes it. A changed input is a warning.
 Result<int> write_again(const Recording& recording, const Origin& origin, Call& call) {
   const std::string& out = call.common.out;
   const std::vector<std::string> changed = changed_inputs(origin, recording);
-  // The rebuilt take is written all the same: the user may have mended an input on purpose. The
-  // exit code is 1.
+  // The user may have corrected an input on purpose, so the take is written in any case. The exit
+  // code is then 1.
   for (const std::string& name : changed) {
     call.console.note("kinalign rebuild: warning: " + changed_line(name));
   }
@@ -139,8 +137,8 @@ Result<int> write_again(const Recording& recording, const Origin& origin, Call& 
   return changed.empty() ? code_of(report.findings) : 1;
 }
 
-/// Reads the origin, checks the inputs, and then compares or writes. The order matters: nothing is
-/// opened for writing before all inputs are known.
+/// Reads how the take was made, checks the inputs, and then compares or writes. No file is opened
+/// for writing before all inputs were found.
 Result<int> run(Rebuild& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& take = o.take.front();
@@ -156,8 +154,8 @@ Result<int> run(Rebuild& o, Call& call) {
                         "names that kinalign info {} shows: copy or link them there",
                         count, take)};
       });
-  // A missing input is an error, not a difference: the comparison would say nothing about the take.
-  // The files are closed again at once: this loop only finds a missing file before the work begins.
+  // Each file is opened only to find out early whether it exists. A missing input is an error and
+  // not a difference, because it says nothing about the take.
   for (const std::string& input : inputs) KA_TRY(InputFile::open(files, input));
   Result<Recording> recording =
       open_recording(files, origin.parameters, base, {call.console.progress(), call.jobs});

@@ -30,7 +30,8 @@ Usage describe_recover(Recover& o) {
       {"FILE",
        "a recording's file, read with all other parts in its folder; or several, in any order",
        &o.files, 1, SIZE_MAX}};
-  // The name of the new file is never guessed: the old files lie in the same folder and must stay.
+  // The user must name the new file, because the old files lie in the same folder and must not be
+  // replaced.
   usage.check = [](const Common& common, const Sources&) -> Result<void> {
     if (common.out.empty()) return Failure(Error{"--out", 0, "a new file's name", "none"});
     return {};
@@ -38,10 +39,9 @@ Usage describe_recover(Recover& o) {
   return usage;
 }
 
-/// The first lines of the text: the messages in the new file, and those of the old files that are
-/// not in it.
-/// Shows how much of the recording survived. `missing` is a lower bound, since only counted or
-/// numbered messages can be known to be missing.
+/// The first lines of the text: how many messages are in the new file, and how many of the old
+/// files' messages are missing. The true number may be higher than `missing`, because only counted
+/// or numbered messages can be missed.
 std::string head_line(const std::string& out, const Recovered& done) {
   const std::string of =
       done.missing > 0 ? " of at least " + grouped(done.messages + done.missing) : "";
@@ -57,20 +57,20 @@ std::string head_line(const std::string& out, const Recovered& done) {
   return text;
 }
 
-/// Recovers a recording and prints the counts. The exit code is 1 if anything is missing or
+/// Recovers a recording and prints the counts. The exit code is 1 if messages are missing or
 /// damaged.
 Result<int> run(Recover& o, Call& call) {
   call.console.advise("nothing was written; the old files are unchanged");
   const std::string& out = call.common.out;
-  // recover_recording() refuses the named files and their siblings too. This check gives the same
-  // message as other verbs.
+  // recover_recording() also refuses to overwrite the old files. This check gives the message that
+  // other verbs give.
   KA_TRY(keep_inputs(out, o.files));
   const Recovered done = KA_TRY(recover_recording(
       call.surroundings.files, o.files, out, call.common.overwrite(), call.console.progress()));
   call.console.wrote(out);
   std::string text = head_line(out, done);
-  // The next three lines appear only if there is something to say. A recording that only lacked its
-  // index prints one line.
+  // Each of the next three lines is printed only if its count is not 0. If a recording lacked only
+  // its index, there is one line in all.
   if (done.unchecked > 0) {
     text +=
         fmt::format("  {} of them have no checksum (a truncated end, or a writer that made none)\n",
@@ -92,7 +92,7 @@ Result<int> run(Recover& o, Call& call) {
       {"missing", done.missing},
       {"skipped_bytes", done.skipped},
       {"findings", nlohmann::ordered_json::parse(findings_json(done.findings))}}));
-  // Missing and nameless messages count as findings even if no finding tells of them.
+  // Messages that are missing or have no name make the exit code 1 even without a finding.
   return std::max(code_of(done.findings), done.missing + done.nameless > 0 ? 1 : 0);
 }
 

@@ -23,14 +23,13 @@ namespace kinalign {
 
 namespace {
 
-/// The length of the part for which the page shows raw samples.
-/// The page shows raw samples for a limited part of a take. Everything else is drawn from the
-/// take's rows.
+/// The length of the detail, s: the part of a take for which the page shows raw samples. The rest
+/// of the page shows the resampled rows of the take.
 constexpr double detail_length_s = 60.0;
-constexpr double no_detail_s = -1.0;  // not given: the verb chooses the place
+constexpr double no_detail_s = -1.0;  // no --detail-s was given; the verb chooses the part
 
-/// The options of `kinalign report`. `inputs` is empty unless the flag is given; the take's own
-/// folder is then tried.
+/// The options of `kinalign report`. If `inputs` is empty, the raw files are searched in the take's
+/// folder.
 struct Report {
   std::vector<std::string> take;
   std::string inputs;
@@ -52,17 +51,16 @@ Usage describe_report(Report& o) {
        &o.detail_s, no_detail_s, 1e9},
       {"open", "show the page with xdg-open", &o.open}};
   usage.check = [](const Common& common, const Sources&) -> Result<void> {
-    // The extension is required so that a browser opens the file as a page.
+    // Browsers show a file as a page only if it has one of these endings.
     return check_out(common, {".html", ".htm"}, "the page's file name, as in -o take.html");
   };
   return usage;
 }
 
 // ---- in a child process: everything that reads HDF5
-// The functions of this part return text, because only text crosses the border between the
-// processes.
+// These functions return text, because a child process can return nothing else.
 
-/// The text of use(reader, report) on the take. Runs in a child process.
+/// The text that use(reader, report) makes of a take. `use` runs in a child process.
 template <class Use>
 Result<std::string> text_of_take(FileSystem& files, const std::string& path, const Use& use) {
   return run_guarded(GuardLimits{}, blame(path), [&]() -> Result<std::string> {
@@ -73,7 +71,7 @@ Result<std::string> text_of_take(FileSystem& files, const std::string& path, con
   });
 }
 
-/// JSON with the first row's stamp, the begin of the detail of a long take ("begin_s"), and the
+/// JSON about a take: the stamp of the first row, the begin of the detail ("begin_s"), and the
 /// names of the streams of points and of nodes.
 Result<std::string> outline_json(TakeReader& reader, const AlignmentReport& report) {
   nlohmann::json out{{"begin_ns", to_ns(report.begin)}, {"begin_s", 0.0}};
@@ -83,29 +81,30 @@ Result<std::string> outline_json(TakeReader& reader, const AlignmentReport& repo
     if (std::holds_alternative<ImuGroup>(group.kind)) out["nodes"].push_back(group.name);
   }
   const double length = seconds(report.end - report.begin);
-  // A short take fits into the detail as a whole, and a take without points has no gap to look for.
+  // The detail shows the whole of a short take. A take without points has no gap to look for.
   if (length <= detail_length_s || out["points"].empty()) return json_text(out);
   LongestGap gap;
   TakeSlab slab;
   while (KA_TRY(reader.next(slab))) gap.add(slab);
-  // The middle of the longest gap becomes the middle of the detail, as far as the take reaches.
+  // The middle of the longest gap becomes the middle of the detail, unless the take begins or ends
+  // too near.
   const double begin = gap.middle_s().value_or(0.0) - 0.5 * detail_length_s;
   out["begin_s"] = std::clamp(begin, 0.0, length - detail_length_s);
   return json_text(out);
 }
 
-/// One line of JSON about the page, then the page.
+/// One line of JSON about the page, followed by the page itself.
 Result<std::string> page_text(const std::string& path, TakeReader& reader,
                               const AlignmentReport& report, const TakeFigureOptions& options) {
-  // The first pass is over before this function runs: outline_json() needs its own reader.
+  // outline_json() has read the take once before, with another reader.
   TakeFigures figures(reader.header(), report, options);
   TakeSlab slab;
   while (KA_TRY(reader.next(slab))) figures.add(slab);
   TakePage page = figures.finish();
   page.file = file_name(path);
   page.software = reader.software();
-  // The printed summary needs three facts of the page. They go ahead of the HTML as one line, so
-  // that one text carries both.
+  // The printed summary needs three facts about the page. They stand in one line before the HTML,
+  // so that the child process can return both as one text.
   nlohmann::ordered_json about{{"verdicts", nlohmann::ordered_json::array()},
                                {"worst", nlohmann::ordered_json::array()},
                                {"stride", page.stride}};
@@ -123,29 +122,29 @@ Result<std::string> page_text(const std::string& path, TakeReader& reader,
 }
 
 // ---- the raw samples of figures 4, 11 and 12
-// The take holds resampled rows only. Raw samples come from the inputs, which other readers than
-// HDF5 read, so no child is needed.
+// A take has only resampled rows. Raw samples come from the input files, which are not HDF5, so no
+// child process is needed.
 
-/// The facts about a take that the reading of raw samples needs.
+/// The facts about a take that are needed to read its raw samples.
 struct Outline {
   Time begin{};
-  double detail_begin_s = 0.0;             // s from the first row
+  double detail_begin_s = 0.0;             // begin of the detail, s after the first row
   std::vector<std::string> points, nodes;  // names of streams
 };
 
-/// The raw samples for figures 4, 11 and 12. Empty if the inputs were not found or the take has no
-/// points and no nodes; the page then omits these samples.
+/// The raw samples for figures 4, 11 and 12. Empty if the input files were not found, or if the
+/// take has neither points nor nodes. The page then shows no raw samples.
 struct RawSamples {
   std::vector<RawPoints> points;
   std::vector<RawNode> nodes;
   bool empty() const { return points.empty() && nodes.empty(); }
 };
 
-/// Reads the outline in a child process. `wanted_s`: the value of --detail-s; negative if the verb
-/// chooses the place.
+/// Reads the facts in a child process. `wanted_s`: the value of --detail-s; negative if the verb
+/// chooses the begin of the detail.
 Result<Outline> outline_of(FileSystem& files, const std::string& path, double wanted_s) {
   const std::string text = KA_TRY(text_of_take(files, path, outline_json));
-  try {  // a child process that read a damaged file is not trusted
+  try {  // the child read a file that may be damaged, so its text may be wrong
     const auto json = nlohmann::json::parse(text);
     Outline out;
     out.begin = utc_time(json.at("begin_ns").get<std::int64_t>());
@@ -158,9 +157,8 @@ Result<Outline> outline_of(FileSystem& files, const std::string& path, double wa
   }
 }
 
-/// The samples of a stream of points within the detail, with stamps on the take's axis.
-/// The whole stream is read, because a pass can only begin at the front. Only the detail is kept in
-/// memory.
+/// The raw samples of a stream of points within the detail, with stamps in the time of the take. A
+/// stream can only be read from its beginning, so all of it is read, but only the detail is stored.
 Result<RawPoints> raw_points(const RecordedStream& stream, const Outline& outline) {
   const auto& input = std::get<PointInput>(stream.data);
   const std::size_t joints = input.joint_names.size();
@@ -174,7 +172,8 @@ Result<RawPoints> raw_points(const RecordedStream& stream, const Outline& outlin
       const double s = seconds(at - outline.begin);
       if (s < outline.detail_begin_s || s > end_s) continue;
       out.frames.stamps.push_back(at);
-      // `places` and `states` point to the joints of frame t: [T,J,3] m and [T,J].
+      // The joints of frame t begin at this index of the arrays [frame, joint, 3] (m) and [frame,
+      // joint].
       const auto cell = static_cast<std::ptrdiff_t>(t * joints);
       const auto count = static_cast<std::ptrdiff_t>(joints);
       const auto places = block.positions.begin() + 3 * cell;
@@ -186,8 +185,8 @@ Result<RawPoints> raw_points(const RecordedStream& stream, const Outline& outlin
   return out;
 }
 
-/// The samples of each node of a stream within the detail, with stamps on the take's axis.
-/// Rows of nodes are [T,N]: sample i belongs to stamp i / N and to node i % N.
+/// The raw samples of each node of a stream within the detail, with stamps in the time of the take.
+/// A row has one sample of each of N nodes, so sample i belongs to stamp i / N and node i % N.
 Result<std::vector<RawNode>> raw_nodes(const RecordedStream& stream, const Outline& outline) {
   const auto& input = std::get<ImuInput>(stream.data);
   const std::size_t worn = input.node_names.size();
@@ -200,12 +199,12 @@ Result<std::vector<RawNode>> raw_nodes(const RecordedStream& stream, const Outli
     for (std::size_t sample = 0; sample < block.valid.size(); ++sample) {
       const Time at = take_time(stream.clock, block.stamps[sample / worn]);
       const double s = seconds(at - outline.begin);
-      // An invalid sample is a gap. The figure leaves it out rather than drawing zeros.
+      // An invalid sample is a gap in the figure and not a zero.
       if (block.valid[sample] == 0 || s < outline.detail_begin_s || s > end_s) continue;
       RawNode& node = out[sample % worn];
       node.stamps.push_back(at);
       const auto put = [sample](const std::vector<double>& from, std::vector<double>& to) {
-        // A device without gyroscope or accelerometer has an empty array.
+        // The array is empty if the device has no gyroscope or accelerometer.
         if (from.empty()) return;
         const auto begin = from.begin() + static_cast<std::ptrdiff_t>(3 * sample);
         to.insert(to.end(), begin, begin + 3);
@@ -217,13 +216,13 @@ Result<std::vector<RawNode>> raw_nodes(const RecordedStream& stream, const Outli
   return out;
 }
 
-/// The raw samples of all streams of points and nodes. Fails if an input is missing or has other
-/// bytes than the take's input.
+/// The raw samples of all streams of points and nodes. Fails if an input file is missing or has
+/// changed since the take was made.
 Result<RawSamples> read_raw(Call& call, const Origin& origin, const Outline& outline,
                             const std::string& base) {
   Manifest manifest = origin.parameters;
-  // Streams that are drawn from the take alone (skeletons) are removed, so their files need not be
-  // there.
+  // Raw samples of skeletons are not shown, so their streams are removed and their files need not
+  // exist.
   std::erase_if(manifest.streams, [&outline](const StreamOptions& stream) {
     const auto has = [&stream](const std::vector<std::string>& names) {
       return std::find(names.begin(), names.end(), stream.name) != names.end();
@@ -233,15 +232,15 @@ Result<RawSamples> read_raw(Call& call, const Origin& origin, const Outline& out
   RawSamples out;
   if (manifest.streams.empty()) return out;
   FileSystem& files = call.surroundings.files;
-  // Opening each file first gives an error that names the missing file. The recording would be
-  // surveyed before that.
+  // Each file is opened once before the recording is read, so that a missing file gives an early
+  // error.
   for (const std::string& file : files_named(manifest, base)) {
     KA_TRY(InputFile::open(files, file));
   }
   const Recording recording =
       KA_TRY(open_recording(files, manifest, base, {call.console.progress(), call.jobs}));
   const std::vector<std::string> changed = changed_inputs(origin, recording);
-  // The samples of a changed input are not those that the take was made from, so none are shown.
+  // If an input has changed, its samples are not those of the take, so none are shown.
   if (!changed.empty()) {
     return Failure(Error{changed.front(), 0, "the file that the take was made from", "another"});
   }
@@ -257,18 +256,19 @@ Result<RawSamples> read_raw(Call& call, const Origin& origin, const Outline& out
 
 // ---- the verb
 
-/// Megabytes of 10^6 bytes, as file managers show them.
+/// A size in megabytes of 10^6 bytes, as file managers show it.
 std::string size_text(std::size_t bytes) {
   return fmt::format("{:.1f} MB", 1e-6 * static_cast<double>(bytes));
 }
 
-/// The printed text: file, size, verdicts, the most serious concerns.
+/// The printed text: the page's file and size, the verdicts, and the most serious problems.
 std::string summary_text(const std::string& out, std::size_t bytes,
                          const nlohmann::ordered_json& about, Call& call) {
   std::string streams;
   for (const auto& verdict : about["verdicts"]) {
     const auto quality = verdict["quality"].get<std::string>();
-    // The colours match the severities: bad as an error, anything between as a warning.
+    // "bad" has the colour of an error, "good" is green, and all other verdicts have the colour of
+    // a warning.
     const Colour colour =
         quality == "good" ? Colour::good : (quality == "bad" ? Colour::bad : Colour::warning);
     streams += (streams.empty() ? "" : ", ") + harmless(verdict["stream"].get<std::string>()) +
@@ -283,33 +283,33 @@ std::string summary_text(const std::string& out, std::size_t bytes,
   return text;
 }
 
-/// Opens the page with xdg-open, whose exit code is the only sign of success. If it fails, that is
-/// only noted: the page is written already.
+/// Opens the page in a browser with xdg-open. If xdg-open fails, the user gets a note, but no
+/// error, because the page has been written.
 void show(const std::string& out, Call& call) {
   const auto child = start_child("xdg-open", {"xdg-open", out}, -1, -1);
   if (child && wait_for_child(*child) == 0) return;
   call.console.note(harmless("kinalign report: xdg-open could not show " + out));
 }
 
-/// The page's size, and the JSON about it.
+/// The size of the page, and the JSON about it.
 struct Written {
   std::size_t bytes = 0;
   nlohmann::ordered_json about;
 };
 
-/// Makes the page in a child process and writes it.
+/// Makes the page in a child process and writes the file.
 Result<Written> write_page(const std::string& take, const TakeFigureOptions& options, Call& call) {
   FileSystem& files = call.surroundings.files;
-  // The output is created before the long work: a name that exists already fails at once.
+  // The file is created first: if its name is taken, the verb fails before the long work.
   OutputFile out = KA_TRY(OutputFile::create(files, call.common.out, call.common.overwrite()));
   const auto page = [&](TakeReader& reader, const AlignmentReport& report) {
     return page_text(take, reader, report, options);
   };
   const std::string text = KA_TRY(text_of_take(files, take, page));
-  // json_text() makes one line, so the first line end separates the JSON from the page.
+  // The JSON is one line, so the page begins after the first line end.
   const std::size_t line = text.find('\n');
   const std::string_view html = std::string_view(text).substr(line + 1);
-  // A child process that read a damaged file is not trusted.
+  // The child process has read a file that may be damaged, so its text may be wrong.
   Written written{html.size(), nlohmann::ordered_json::parse(text.substr(0, line), nullptr, false)};
   if (!written.about.is_object()) {
     return Failure(Error{take, 0, "a take that can be read", "an unreadable answer"});
@@ -328,20 +328,20 @@ int print_written(const Written& written, bool has_raw, Call& call) {
   json.update(written.about);
   json["raw_samples"] = has_raw;
   call.console.print_json(json_text(json));
-  // A bad stream gives exit code 1. Warnings alone give 0, because a page shows them in any case.
+  // A bad stream gives exit code 1. Warnings alone give 0, because the page shows them anyway.
   const auto& verdicts = written.about["verdicts"];
   const bool any_bad = std::any_of(verdicts.begin(), verdicts.end(),
                                    [](const auto& verdict) { return verdict["quality"] == "bad"; });
   return any_bad ? 1 : 0;
 }
 
-/// The raw samples that can be read. Without --inputs, a take whose inputs lie elsewhere has none,
-/// which is no error.
+/// The raw samples that can be read. Without --inputs it is no error if the input files are
+/// elsewhere; there are no raw samples then.
 Result<RawSamples> find_raw(const Report& o, Call& call, const Origin& origin,
                             const Outline& outline, const std::string& base) {
   auto raw = read_raw(call, origin, outline, base);
-  // With --inputs the user asked for raw samples, so their absence is an error. Ctrl-C is an error
-  // in both cases.
+  // With --inputs the user wants raw samples, so it is an error if they can't be read. Ctrl-C is
+  // always an error.
   const bool optional = o.inputs.empty() && !interrupted();
   if (!raw && optional) return RawSamples{};
   return raw;
@@ -351,7 +351,8 @@ Result<RawSamples> find_raw(const Report& o, Call& call, const Origin& origin,
 Result<int> run(Report& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& take = o.take.front();
-  // The JSON's schema is report_page, since kinalign.report is the report inside a take.
+  // The schema is kinalign.report_page, because kinalign.report is the schema of the report in a
+  // take.
   call.console.name_json("report_page");
   if (KA_TRY(kind_of_file(files, take)) != FileKind::take) {
     return call.console.refuse(
@@ -362,7 +363,7 @@ Result<int> run(Report& o, Call& call) {
   std::string base = o.inputs.empty() ? std::string(folder(take)) : o.inputs;
   if (!base.empty() && !base.ends_with('/')) base += '/';
   std::vector<std::string> inputs = files_named(origin.parameters, base);
-  // The take is an input of its page, so -o must not name it.
+  // -o must not name the take itself, because the take is an input of the page.
   inputs.push_back(take);
   KA_TRY(keep_inputs(call.common.out, inputs));
   const Outline outline = KA_TRY(outline_of(files, take, o.detail_s));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A temporary folder, for files that one program writes and another reads.
+// A temporary folder for files that are needed only while the program runs.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -12,7 +12,7 @@
 
 namespace kinalign {
 
-/// A temporary folder that is removed with its content at the end of the object's life.
+/// A temporary folder. The destructor removes it with its content.
 class Scratch {
  public:
   static Result<Scratch> make() {
@@ -27,13 +27,12 @@ class Scratch {
     }
     return Scratch(std::move(name));
   }
-  // The object that was moved from has an empty name, so its destructor removes nothing.
+  // The other object gets an empty name, so its destructor removes nothing.
   Scratch(Scratch&& other) noexcept : name_(std::exchange(other.name_, {})) {}
   Scratch& operator=(Scratch&&) = delete;
   Scratch(const Scratch&) = delete;
   Scratch& operator=(const Scratch&) = delete;
-  // Errors of the removal are ignored: nothing can be done about them here, and the result is
-  // complete.
+  // An error while removing is ignored, because it does not change the verb's result.
   ~Scratch() {
     std::error_code ignored;
     if (!name_.empty()) std::filesystem::remove_all(name_, ignored);

@@ -16,8 +16,8 @@ namespace kinalign {
 
 namespace {
 
-/// The take's software, parameters and input hashes as JSON. Runs in the child process.
-/// HDF5 can crash on a damaged file, so only plain text crosses from the child to this process.
+/// The software, the parameters and the hashes of the inputs of a take, as JSON. The function runs
+/// in a child process, because HDF5 can crash on a damaged file.
 Result<std::string> origin_json(FileSystem& files, const std::string& path) {
   const TakeReader reader = KA_TRY(TakeReader::open(files, path));
   nlohmann::json out{{"software", reader.software()},
@@ -32,16 +32,16 @@ Result<std::string> origin_json(FileSystem& files, const std::string& path) {
 }  // namespace
 
 Result<Origin> origin_of(FileSystem& files, const std::string& path) {
-  // blame() makes the error for a crash: it names the take, not the library.
+  // If the child process crashes, the error from blame() names the take.
   const std::string text =
       KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return origin_json(files, path); }));
-  try {  // a child process that read a damaged file is not trusted
+  try {  // the child read a file that may be damaged, so its text may be wrong
     const auto json = nlohmann::json::parse(text);
     Origin origin;
     origin.software = json.at("software").get<std::string>();
     origin.parameters = KA_TRY(parse_parameters_json(json.at("parameters").get<std::string>()));
     for (const auto& file : json.at("files")) {
-      // The length is not in the JSON: changed_inputs() compares hashes, which decide alone.
+      // The file's size stays 0, because changed_inputs() compares only hashes.
       origin.files.push_back({file.at(0).get<std::string>(), file.at(1).get<std::string>(), 0});
     }
     return origin;
@@ -51,8 +51,8 @@ Result<Origin> origin_of(FileSystem& files, const std::string& path) {
 }
 
 std::vector<std::string> changed_inputs(const Origin& origin, const Recording& recording) {
-  // A file that several streams read is listed once. A file is the same only under the same name,
-  // so swapped files are found too.
+  // A file that several streams read is listed once. The name must be equal, too, so two files that
+  // were exchanged are found.
   std::vector<std::string> changed;
   for (const RecordedStream& stream : recording.streams) {
     for (const InputFacts& file : stream.files) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parameters and inputs that a take was made from, and whether the inputs have changed.
+// Reads from a take how it was made, and finds out whether its input files have changed.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -11,18 +11,18 @@
 
 namespace kinalign {
 
-/// The part of a take's header that tells how it was made. `rebuild` aligns again by it; `report`
-/// reads the raw samples by it.
+/// The part of a take that states how the take was made. `rebuild` aligns the inputs again with it.
+/// `report` reads the raw samples with it.
 struct Origin {
   std::string software;
   Manifest parameters;
-  std::vector<InputFacts> files;  // names and hashes only, no sizes
+  std::vector<InputFacts> files;  // names and hashes; sizes are 0
 };
 
-/// Reads the take's origin in a child process.
+/// Reads how a take was made. A child process reads the file.
 Result<Origin> origin_of(FileSystem& files, const std::string& path);
 
-/// The names of inputs whose bytes differ from those that the take was made from.
+/// The names of inputs whose bytes have changed since the take was made.
 std::vector<std::string> changed_inputs(const Origin& origin, const Recording& recording);
 
 }  // namespace kinalign
