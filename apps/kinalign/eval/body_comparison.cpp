@@ -14,29 +14,30 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Marks a model for poses or fusion. Returns the rows of kinalign-learn
-/// (apps/kinalign-learn/marks.h) as one array.
+/// Computes the marks of a model for poses or fusion. Returns the rows that kinalign-learn prints
+/// (apps/kinalign-learn/marks.h) as one JSON array.
 Result<std::string> rows_of_trial(const Trial& trial, Call& call) {
   std::string model = trial.model;
-  // A finished model has its own file. Otherwise the method is trained on the fold's takes.
+  // A finished model has its own file. Without a model, the method is trained on the takes of the
+  // fold.
   if (model.empty()) model = KA_TRY(trained_model(trial.training, call));
   const auto rows = KA_TRY(rows_of_model(trial.training, model, call));
-  // The program prints one JSON object a line. They are parsed here once, so the cache never holds
-  // text that is no JSON.
+  // kinalign-learn prints one JSON object a line. Each is parsed here, so that only valid JSON gets
+  // into the cache.
   Json out = Json::array();
   for (const std::string& row : rows) out.push_back(Json::parse(row));
   return out.dump();
 }
 
-/// The name of a mark in the rows of kinalign-learn, and in the table.
-/// Several states of the nodes give the same marks. The table needs them under different names.
+/// The name of a mark in the rows of kinalign-learn, and its name in the table. Rows for several
+/// states of the nodes have the same marks, which need different names in the table.
 struct RowMark {
   std::string_view row, table;
 };
 
-/// The marks of a pose that the table shows for this state of the nodes.
-/// The table shows the full marks only for calibrated nodes. For the other states, two marks tell
-/// how much is lost.
+/// The marks of a pose that the table shows for a state of the nodes. For calibrated nodes the
+/// table shows all marks. For the other states it shows two marks, which tell how much worse the
+/// pose is.
 std::vector<RowMark> pose_marks_of(const std::string& nodes) {
   if (nodes == "calibrated") {
     return {{"sip_deg", "sip_deg"},
@@ -45,37 +46,37 @@ std::vector<RowMark> pose_marks_of(const std::string& nodes) {
             {"position_cm", "position_cm"},
             {"jitter_ratio", "jitter"}};
   }
-  // Headings drift while nodes are worn. This state shows the answer 20 minutes after the
+  // The headings of nodes drift while they are worn. This state is 20 minutes after the
   // calibration.
   if (nodes == "20 minutes later") {
     return {{"sip_deg", "later_sip_deg"}, {"position_cm", "later_position_cm"}};
   }
-  // The state's name begins with that of the lost node.
+  // The name of this state is the name of the lost node and " lost".
   if (nodes.ends_with(" lost")) {
     return {{"sip_deg", "lost_sip_deg"}, {"position_cm", "lost_position_cm"}};
   }
-  // A state that the table does not show has no columns.
+  // The table has no columns for any other state.
   return {};
 }
 
-/// Adds each person's values of a row under the names of the table.
+/// Adds the values of each person in a row, under the names of the table.
 void add_people(const Json& row, const std::vector<RowMark>& names, MethodMarks& out) {
   for (const auto& [person, values] : row.at("people").items()) {
     for (const RowMark& name : names) {
-      // A person without hidden joints has no error for them. The value in the row is then 0 and
-      // means nothing.
+      // If no joint of a person was hidden, the row has 0 for their error; that value means
+      // nothing.
       if (name.row == "hidden_cm" && values.at("hidden") == 0) continue;
-      // Nodes alone can't know the place of the body in the room.
+      // Nodes alone can't measure where the body is in the room.
       if (name.row == "place_cm" && row.at("devices") == "nodes") continue;
       const double value = values.at(std::string(name.row)).get<double>();
-      // add() averages over seeds, folds and states of the same name.
+      // add() takes the mean over seeds, folds and states of the same name.
       out.marks[std::string(name.table)][person].add(value);
     }
   }
 }
 
-/// The row of the table for that method and variant; added if it is missing.
-/// The reference may become invalid when the next row is added, so it must not be kept.
+/// Finds the table's row of a method and variant, or adds it. The next call may add a row and move
+/// the others, so the reference must not be kept.
 MethodMarks& row_for(const std::string& method, const std::string& variant,
                      std::vector<MethodMarks>& all) {
   const auto found = std::find_if(all.begin(), all.end(), [&](const MethodMarks& one) {
@@ -84,9 +85,8 @@ MethodMarks& row_for(const std::string& method, const std::string& variant,
   return found != all.end() ? *found : all.emplace_back(MethodMarks{method, variant});
 }
 
-/// Adds each person's mean error of the nodes' headings after 60 s.
-/// Only rows about headings have "after_deg", one for each node. A person's value is the mean over
-/// the nodes.
+/// Adds each person's mean error of the nodes' headings after 60 s. Only rows about headings have
+/// "after_deg", one row for each node. A person's value is the mean over the nodes.
 void add_headings(const Json& rows, const std::string& method, MethodMarks& out) {
   std::map<std::string, Mean> people;
   for (const Json& row : rows) {
@@ -95,15 +95,15 @@ void add_headings(const Json& rows, const std::string& method, MethodMarks& out)
       people[person].add(value.get<double>());
     }
   }
-  // The mean over nodes is made first, so each seed counts once for a person.
+  // The mean over the nodes is taken first, so that each seed has the same weight for a person.
   for (const auto& [person, mean] : people) out.marks["heading_deg"][person].add(*mean.value());
 }
 
-/// Sorts the rows of one trial into the rows of the table. Rows with "devices" are of fusion, rows
-/// with "nodes" of poses; the filter keeps its own name, since it is the same for every model.
-/// "filter" is the method without a network that every fusion model is compared with.
+/// Puts the rows of one trial into the rows of the table. Rows with "devices" are about fusion,
+/// rows with "nodes" about poses. Every model for fusion is compared with the method "filter",
+/// which has no network; its rows are the same for every model.
 void add_rows(const std::string& name, const Json& rows, std::vector<MethodMarks>& out) {
-  // The order is that of the columns in body_comparison().
+  // The columns in body_comparison() have the same order.
   static const std::vector<RowMark> fusion{{"all_cm", "position_cm"},
                                            {"hidden_cm", "hidden_cm"},
                                            {"seen_trunk_cm", "seen_trunk_cm"},
@@ -113,12 +113,12 @@ void add_rows(const std::string& name, const Json& rows, std::vector<MethodMarks
                                            {"sip_deg", "sip_deg"}};
   for (const Json& row : rows) {
     const auto method = row.at("method").get<std::string>();
-    // The text calls each model by its method. The table has the name that the user gave.
+    // A row has the name of the model's method. The table has the name that the user gave.
     const std::string& called = method == "filter" ? method : name;
     if (row.contains("devices")) {
       MethodMarks& marks = row_for(called, row.at("devices").get<std::string>(), out);
       add_people(row, fusion, marks);
-      // Headings are shown in the row of both devices only.
+      // Headings stand only in the row about both devices.
       if (marks.variant == "both") add_headings(rows, method, marks);
     } else if (row.contains("nodes")) {
       add_people(row, pose_marks_of(row.at("nodes").get<std::string>()), row_for(called, "", out));
@@ -126,9 +126,8 @@ void add_rows(const std::string& name, const Json& rows, std::vector<MethodMarks
   }
 }
 
-/// Cached texts may be damaged, so an error of JSON gives no rows, and the marks are computed
-/// again.
-/// The function must not fail: an empty result makes marks_for() compute the marks again.
+/// Sums up the cached texts. A cached text may be damaged, so an error of JSON gives an empty
+/// result, and marks_for() computes the marks again.
 std::vector<MethodMarks> sum_up_rows(const std::string& name, const std::vector<FoldMarks>& folds) {
   try {
     std::vector<MethodMarks> out;
@@ -141,13 +140,13 @@ std::vector<MethodMarks> sum_up_rows(const std::string& name, const std::vector<
   }
 }
 
-/// Each take once, with its person, action and part.
-/// A stretch is a part of a take between gaps, and a take may have several of them.
+/// Lists each take once, with its person, action and part of the split. A take with gaps has
+/// several stretches.
 std::vector<FoldTake> takes_of_windows(const Windows& windows) {
   std::vector<FoldTake> out;
   std::set<std::size_t> known;
   for (const Stretch& stretch : windows.stretches) {
-    // The set knows takes by their index; the first stretch of a take stands for all.
+    // Only the first stretch of a take adds the take to the list.
     if (!known.insert(stretch.take).second) continue;
     const WindowsFacts::Take& take = windows.facts.takes[stretch.take];
     out.push_back({take.name, take.subject, take.action, run_of(take.name),
@@ -161,11 +160,12 @@ std::vector<FoldTake> takes_of_windows(const Windows& windows) {
 Result<Comparison> body_comparison(const Eval& o, Learns task, const std::string& bytes,
                                    const std::string& file) {
   Comparison out;
-  // The windows are read for their facts only. kinalign-learn reads the file again for each trial.
+  // Only the facts about the windows are used here. kinalign-learn reads the file again for each
+  // trial.
   const Windows windows = KA_TRY(read_windows(bytes, file));
   out.dataset = windows.facts.dataset;
   out.takes = takes_of_windows(windows);
-  // Angles are in degrees, distances in centimetres.
+  // Marks of angles are in degrees, marks of distances in centimetres.
   if (task == Learns::pose) {
     out.columns = {{"sip_deg", "SIP, °"},
                    {"angle_deg", "angle, °"},
@@ -188,7 +188,7 @@ Result<Comparison> body_comparison(const Eval& o, Learns task, const std::string
                    {"heading_deg", "headings after 60 s, °"}};
     out.note = o.input.empty() ? "a simulated Kinect" : "the Kinect " + o.input;
   }
-  // Every row is about one person, so the statistics are always over people.
+  // Every value belongs to one person, so means are always over people.
   out.over = "people";
   out.mark = rows_of_trial;
   out.sum_up = sum_up_rows;

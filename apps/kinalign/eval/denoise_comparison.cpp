@@ -20,19 +20,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The same limit as in the benchmark, so both mark the same stretches.
-constexpr std::size_t least_rows = 8;  // stretches with fewer frames are left out
+// `kinalign benchmark` has the same limit, so both use the same stretches.
+constexpr std::size_t least_rows = 8;  // frames; shorter stretches are left out
 
-/// The marks of a method on a tested stretch.
-/// One line of a cached text. Index 0 and 1 of `marks` stand for plain and steadied everywhere in
-/// this file.
+/// The marks of a method on a tested stretch: of its plain answer and of its steadied answer. An
+/// answer is steadied by smoothing, constant bones and the answer to the mirrored input (Steadier).
 struct Marked {
   std::string take, subject;
-  std::array<DenoiseMarks, 2> marks;  // plain answer, steadied answer
+  std::array<DenoiseMarks, 2> marks;  // [0] plain, [1] steadied
 };
 
-/// Calls use(mark) for every mark, in the order of the cached texts. If the order or the meaning
-/// changes, cache_version in eval.cpp must change, too.
+/// Calls use(mark) for every mark, in the order of the cached texts. If this order or the meaning
+/// of a mark changes, cache_version in eval.cpp must change, too.
 void each_mark(auto& marks, const auto& use) {
   const auto all = [&](auto&... each) { (use(each), ...); };
   auto& p = marks.protocol;
@@ -45,22 +44,22 @@ void each_mark(auto& marks, const auto& use) {
   all(marks.joint_cm, marks.lag_ms, marks.amplitude);
 }
 
-/// A mark in the cache. A mark that does not exist is null, since JSON has no other word for it.
+/// A mark in the cache. A missing mark is null.
 Json json_of(const auto& number) { return number; }
 Json json_of(const std::optional<double>& mark) { return mark ? Json(*mark) : Json(); }
-/// One entry for each of the shared joints.
+/// The marks of joints in the cache: one entry for each shared joint.
 Json json_of(const std::array<std::optional<double>, shared_joint_count>& joints) {
   Json out = Json::array();
   for (const auto& one : joints) out.push_back(json_of(one));
   return out;
 }
-/// The whole histogram is stored, because one_radius_m() over several stretches can't be computed
-/// from their means.
+/// The radii in the cache. The whole histogram is stored, because one_radius_m() of several
+/// stretches does not follow from their means.
 Json json_of(const RadiusMarks& radii) {
   return {radii.cells, radii.within, radii.sum_m, radii.errors};
 }
 
-/// The opposite of json_of(). Throws for another type; read_marks() catches it.
+/// Reads what json_of() wrote. Throws if the JSON has another type; read_marks() catches it.
 void read_mark(const Json& json, auto& number) { json.get_to(number); }
 void read_mark(const Json& json, std::optional<double>& mark) {
   mark = json.is_null() ? std::nullopt : std::optional(json.get<double>());
@@ -88,7 +87,8 @@ DenoiseMarks marks_of(const Json& json) {
   return out;
 }
 
-/// A line of the array is: take, person, plain marks, steadied marks.
+/// The text for the cache: an array with take, person, plain marks and steadied marks of each
+/// stretch.
 std::string written_marks(const std::vector<Marked>& all) {
   Json out = Json::array();
   for (const Marked& one : all) {
@@ -97,8 +97,8 @@ std::string written_marks(const std::vector<Marked>& all) {
   return out.dump();
 }
 
-/// The marks of a cached text; empty if it can't be read as marks.
-/// Empty means damaged or foreign: a text of marks always has at least one stretch.
+/// Reads the marks of a cached text. Returns nothing if the text is damaged or has other content; a
+/// text of marks has at least one stretch.
 std::vector<Marked> read_marks(const std::string& text) {
   try {
     std::vector<Marked> out;
@@ -113,8 +113,8 @@ std::vector<Marked> read_marks(const std::string& text) {
   }
 }
 
-/// Each take once, with its person, action and part.
-/// A take may be cut into several pairs by gaps. The first of them stands for the take.
+/// Lists each take once, with its person, action and part of the split. A take with gaps has
+/// several pairs; the first pair adds it to the list.
 std::vector<FoldTake> takes_of(const Pairs& pairs) {
   std::vector<FoldTake> out;
   std::set<std::string> known;
@@ -126,53 +126,47 @@ std::vector<FoldTake> takes_of(const Pairs& pairs) {
   return out;
 }
 
-/// The data and the marker for methods with the same joints.
-/// A marker belongs to one layout. Methods that are trained here share the data's own; a finished
-/// model may need another.
+/// The data for methods with the same joints, and the object that computes their marks. Methods
+/// that are trained here have the data's joints; a finished model may have others.
 struct Bench {
   Pairs pairs;
   DenoiseLayout layout;
   DenoiseMarker marker;
 };
 
-/// The marker takes what it needs from the pairs, which are moved afterwards.
+/// Makes a Bench. The marker copies what it needs, so the pairs may be moved afterwards.
 Result<Bench> bench_of(Pairs pairs, DenoiseLayout layout, MarkedIn marked_in) {
   DenoiseMarker marker = KA_TRY(DenoiseMarker::make(layout, pairs.all, marked_in));
   return Bench{std::move(pairs), std::move(layout), std::move(marker)};
 }
 
-/// The data, read once, and the space in which errors are marked.
-/// It lives as long as the comparison, and is shared by all trials. `windows` stays for models with
-/// other joints.
+/// The data, read once, and the coordinates in which errors are measured. All trials share it.
+/// `windows` is kept for models with other joints.
 struct BenchData {
   Windows windows;
   std::string input, truth;
   MarkedIn marked_in = MarkedIn::space;
-  Bench own;  // with the joints of the data
+  Bench own;  // for the joints of the data
 };
 
-/// The data with the joints of a finished model, found by name. Fails if the rates differ by more
-/// than 1 %.
-/// A model that was trained at another rate would see motion too fast or too slow, so it is
-/// refused.
+/// The data with the joints of a finished model, which are found by name. Fails if the frame rates
+/// differ by more than 1 %: the model would see the motion too fast or too slow.
 Result<Bench> bench_of_model(const DenoiseLayout& layout, const BenchData& data) {
   if (std::abs(data.own.layout.rate_hz - layout.rate_hz) > 0.01 * layout.rate_hz) {
     return Failure(Error{"--rate", 0, fmt::format("{:g} Hz, the model's", layout.rate_hz),
                          fmt::format("{:g}", data.own.layout.rate_hz)});
   }
-  // An object without stretches states only which joints are wanted, at which rate and with which
-  // parents.
+  // This object has no stretches. It only states the joints, their parents and the frame rate.
   const Pairs joints{layout.inputs, layout.outputs, layout.rate_hz, layout.parents};
   return bench_of(KA_TRY(pairs_for(data.windows, data.input, data.truth, joints, least_rows)),
                   layout, data.marked_in);
 }
 
-/// Marks each tested stretch twice: with the plain answer, and steadied in the same way for every
-/// method.
-/// `tested`: names of takes. Stretches of other takes belong to the training.
+/// Marks each tested stretch twice: with the plain answer and with the steadied answer. `tested`:
+/// names of takes. Stretches of other takes are for training.
 Result<std::string> marks_on(const Bench& bench, const Answer& answer,
                              const std::vector<std::string>& tested) {
-  // The default steadying is used for every method, so only the answers differ.
+  // All methods are steadied with the default settings, so only their answers differ.
   const Steadier steadier({}, bench.layout);
   std::vector<Marked> out;
   for (const Pair& pair : bench.pairs.all) {
@@ -183,10 +177,10 @@ Result<std::string> marks_on(const Bench& bench, const Answer& answer,
   return written_marks(out);
 }
 
-/// Marks a method, or a finished model. A model with other joints than the data's is marked on its
-/// own joints.
+/// Marks a method or a finished model. If a model has other joints than the data, the marks are
+/// those of the model's joints.
 Result<std::string> marks_of_trial(const Trial& trial, const BenchData& data, Call& call) {
-  // A method of the list: make_answer() fits it, or has it trained by kinalign-learn.
+  // make_answer() fits the method here, or lets kinalign-learn train it.
   if (trial.model.empty()) {
     const Answer answer =
         KA_TRY(make_answer({data.own.layout, data.own.pairs.all, trial.training}, call));
@@ -196,20 +190,19 @@ Result<std::string> marks_of_trial(const Trial& trial, const BenchData& data, Ca
       KA_TRY(read_whole(call.surroundings.files, trial.model, most_model_bytes));
   const DenoiseLayout layout = KA_TRY(read_denoise_model(bytes, trial.model)).layout;
   const Answer answer = KA_TRY(answer_of_model(bytes, trial.model));
-  // The common case needs no new pairs: the model has the joints of the data, in the same order.
+  // If the model has the joints of the data in the same order, the data can be used as it is.
   if (layout.inputs == data.own.layout.inputs && layout.outputs == data.own.layout.outputs) {
     return marks_on(data.own, answer, trial.tested);
   }
   return marks_on(KA_TRY(bench_of_model(layout, data)), answer, trial.tested);
 }
 
-/// Stretches that are summed up to one value of the table. The pointers lead into the vector of the
-/// caller.
+/// Stretches that give one value of the table together. The pointers lead to elements of the
+/// caller's vector.
 using Group = std::vector<const Marked*>;
 
-/// The marks by fold; if there is a single fold, by person.
-/// With several folds each value is one fold's. A single fold would give one value and no
-/// deviation, so its people become the values.
+/// Groups the marks by fold, or by person if there is a single fold. One fold would give a single
+/// value without a deviation.
 std::map<std::string, Group> groups_of(const std::vector<FoldMarks>& folds,
                                        const std::vector<std::vector<Marked>>& marks) {
   std::map<std::string, Group> out;
@@ -221,11 +214,11 @@ std::map<std::string, Group> groups_of(const std::vector<FoldMarks>& folds,
   return out;
 }
 
-/// The key of a joint's column in the second table: "WristLeft_cm".
+/// The key of a joint's column in the table of joints: "WristLeft_cm".
 std::string joint_key(std::size_t joint) { return std::string(shared_joints[joint]) + "_cm"; }
 
-/// Adds the means of the columns of the paper's table 9.
-/// Each stretch has the same weight here, unlike in the benchmark, where frames are weighted.
+/// Adds the means of E_p, E_b and E_s, the columns of table 9 in the HFUT-MMD paper. Each stretch
+/// has the same weight; in `kinalign benchmark` each frame has the same weight.
 void add_table_nine(const std::string& name, const Group& group, std::size_t which,
                     MethodMarks& out) {
   Mean position, bone, smooth;
@@ -241,12 +234,12 @@ void add_table_nine(const std::string& name, const Group& group, std::size_t whi
 }
 
 /// Adds the means of a group. `which`: the index in Marked::marks. Skating is weighted by the
-/// frames in which feet stand.
-/// A mark that no stretch of the group has leaves no value, so the table has an empty cell.
+/// number of frames in which a foot stands. If no stretch of the group has a mark, the table's cell
+/// is empty.
 void add_group(const std::string& name, const Group& group, std::size_t which, MethodMarks& out) {
   std::vector<ProtocolMarks> marks;
   double skate = 0.0, contacts = 0.0;
-  // Radii of all parts of the body are added up, and kept for each part as well.
+  // The radii of all parts of the body are added up. Those of each part are kept, too.
   RadiusMarks radii;
   Mean hands, lag, amplitude;
   std::array<Mean, shared_joint_count> joints{};
@@ -258,7 +251,7 @@ void add_group(const std::string& name, const Group& group, std::size_t which, M
       radii.add(m.radii[g]);
       out.radii[std::string(radius_groups[g])].add(m.radii[g]);
     }
-    // A stretch without this mark counts neither as zero nor in the number of values.
+    // A stretch without this mark does not count.
     const auto add = [](const std::optional<double>& value, Mean& to) {
       if (value) to.add(*value);
     };
@@ -266,13 +259,13 @@ void add_group(const std::string& name, const Group& group, std::size_t which, M
     add(m.lag_ms, lag);
     add(m.amplitude, amplitude);
     for (std::size_t j = 0; j < joints.size(); ++j) add(m.joint_cm[j], joints[j]);
-    // 100 turns metres into centimetres. Only frames in which a foot stands by the truth can show
-    // skating.
+    // The factor 100 turns metres into centimetres. Skating exists only in frames in which a foot
+    // of the truth stands.
     const auto standing = static_cast<double>(m.feet.contacts);
     skate += 100.0 * m.feet.skate_m_s * standing;
     contacts += standing;
   }
-  // protocol_row() makes the means of the common protocol; its jitter is the ratio of two means.
+  // protocol_row() computes the means. Its jitter is the ratio of two means.
   const ProtocolMeans row = protocol_row(marks);
   const auto put = [&](const std::string& key, const std::optional<double>& value) {
     if (value) out.marks[key][name].add(*value);
@@ -283,8 +276,8 @@ void add_group(const std::string& name, const Group& group, std::size_t which, M
   put("constancy_cm", row.constancy_cm);
   put("acceleration_mm", row.acceleration_mm);
   put("jitter", row.jitter);
-  // Without stated radii there is no share to report: a share of 0 % would mean that every error is
-  // too large.
+  // A method that states no radii gets an empty cell, since 0 % would mean that every error is too
+  // large.
   if (radii.cells > 0) {
     put("covered_percent", 100.0 * radii.covered());
     put("radius_cm", 100.0 * radii.mean_radius_m());
@@ -297,20 +290,19 @@ void add_group(const std::string& name, const Group& group, std::size_t which, M
   if (contacts > 0.0) put("skate_cm_s", skate / contacts);
 }
 
-/// Makes two rows for a method: its plain answers, and its steadied ones.
-/// Rows keep the order of `which`, so index 0 is plain and 1 is steadied.
+/// Makes two rows for a method: [0] its plain answers, [1] its steadied answers.
 std::vector<MethodMarks> sum_up(const std::string& name, const std::vector<FoldMarks>& folds) {
   std::vector<std::vector<Marked>> marks;
   for (const FoldMarks& fold : folds) {
     marks.emplace_back();
-    // Several seeds give several texts. All their stretches go into the same group and are
-    // averaged.
+    // Each seed gives one text. The stretches of all seeds go into the same group, whose mean is
+    // taken.
     for (const std::string& text : fold.texts) {
       for (Marked& one : read_marks(text)) marks.back().push_back(std::move(one));
     }
   }
   const auto groups = groups_of(folds, marks);
-  // No group means that no text could be read.
+  // There is no group if no text could be read.
   if (groups.empty()) return {};
   std::vector<MethodMarks> out{{name, ""}, {name, "steadied"}};
   for (const auto& [who, group] : groups) {
@@ -331,7 +323,7 @@ Result<Comparison> denoise_comparison(const Eval& o, const std::string& bytes,
   DenoiseLayout layout = KA_TRY(eval_layout(pairs));
   const MarkedIn marked_in = o.own_root ? MarkedIn::own_root : MarkedIn::space;
   Bench own = KA_TRY(bench_of(std::move(pairs), std::move(layout), marked_in));
-  // The functions below need the data after this function has returned, so they share it.
+  // The functions below share the data, because they use it after this function has returned.
   const auto data = std::make_shared<BenchData>(
       BenchData{std::move(windows), input, o.truth, marked_in, std::move(own)});
   Comparison out;
@@ -352,12 +344,12 @@ Result<Comparison> denoise_comparison(const Eval& o, const std::string& bytes,
                  {"table_9_position_cm2", "E_p, cm²", 1},
                  {"table_9_bone_cm", "E_b, cm", 2},
                  {"table_9_smooth_cm", "E_s, cm", 3}};
-  // The joints make a second table: the first one would become too wide.
+  // The joints have their own table, because the first table would become too wide.
   for (std::size_t j = 0; j < shared_joint_count; ++j) {
     out.joints.push_back({joint_key(j), std::string(shared_joints[j]), 1});
   }
-  // The paper's split and the folds of people give values that are people. All other folds are
-  // averaged by fold.
+  // With a split or folds of people, values belong to people. With other folds, values belong to
+  // folds.
   const bool by_people = !o.split.empty() || o.folds == "people" || o.folds == "split";
   out.over = by_people ? "people" : "folds";
   out.mark = [data](const Trial& trial, Call& call) { return marks_of_trial(trial, *data, call); };

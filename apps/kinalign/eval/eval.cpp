@@ -26,20 +26,20 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-/// A larger file of windows is refused.
+/// Larger files of windows are refused.
 constexpr std::size_t most_windows_bytes = std::size_t{4} << 30U;
-/// A larger cached result is refused.
+/// Larger cached results are refused.
 constexpr std::size_t most_cached_bytes = std::size_t{64} << 20U;
-/// The version of cached results. Another number makes every result be computed again.
+/// The version of cached results. After a change of this number, every result is computed again.
 constexpr int cache_version = 6;
 Learns task_of(const std::string& method) {
   const TrainedMethod* found = find_trained(trained_part(method));
   return found == nullptr ? Learns::denoise : found->task;
 }
 
-/// A compared method or model, and its task.
+/// A method or model that is compared, and its task.
 struct Compared {
-  std::string name;  // the method's, or the model's file
+  std::string name;  // the method's name, or the model's file
   Learns task = Learns::denoise;
 };
 
@@ -59,7 +59,7 @@ Result<void> check_methods(const Eval& o, const Sources& given) {
   return {};
 }
 
-/// The command line of `kinalign eval`, with the checks that need several flags.
+/// The command line of `kinalign eval`, with checks that concern several flags.
 Usage describe_eval(Eval& o) {
   Usage usage;
   usage.positionals = {{"METHOD", "methods (default: those that clean a Kinect without training)",
@@ -118,7 +118,7 @@ std::vector<std::string> chosen_methods(const Eval& o) {
   return out;
 }
 
-/// A finished model of --model. `training`: what its file states about its training.
+/// A finished model from --model. `training`: the part of its file that describes its training.
 struct FinishedModel {
   std::string file, hash;
   Learns task = Learns::denoise;
@@ -141,7 +141,7 @@ Result<std::vector<FinishedModel>> finished_models(const Eval& o, Call& call) {
   return out;
 }
 
-/// The task that the methods and the models have in common.
+/// The task that all methods and models share. Fails if they have different tasks.
 Result<Learns> task_of_all(const Eval& o, const std::vector<FinishedModel>& models, Call& call) {
   std::vector<Compared> all;
   for (const std::string& method : chosen_methods(o)) all.push_back({method, task_of(method)});
@@ -154,12 +154,13 @@ Result<Learns> task_of_all(const Eval& o, const std::vector<FinishedModel>& mode
   return all.front().task;
 }
 
-/// The file of windows: its name, content and SHA-256.
+/// A file of windows: its name, content and SHA-256.
 struct WindowsFile {
   std::string file, bytes, hash;
 };
 
-/// The given file of windows, or one cut from the data set into the folder of results.
+/// The file of windows that the user gave. Without one, windows are cut from the data set into the
+/// folder of results.
 Result<WindowsFile> windows_of(const Eval& o, Learns task, Call& call) {
   WindowsFile out{o.windows, "", ""};
   if (out.file.empty()) {
@@ -178,7 +179,7 @@ Result<WindowsFile> windows_of(const Eval& o, Learns task, Call& call) {
   return out;
 }
 
-/// The compared methods, the data and the folds.
+/// Everything that a run needs: the options, the data and the folds.
 struct EvalRun {
   const Eval& options;
   std::vector<FinishedModel> models;
@@ -188,8 +189,9 @@ struct EvalRun {
   std::vector<Fold> folds;
 };
 
-/// Adds the people of that data set whom a model learnt from, also those of the model that it went
-/// on from. `training`: the member of the model's file.
+/// Adds the people of a data set with whom a model was trained. If the training continued from
+/// another model, the people of that model are added, too. `training`: the description in the
+/// model's file.
 void add_people_learnt(const Json& training, const std::string& dataset,
                        std::set<std::string>& people) {
   if (!training.is_object()) return;
@@ -202,8 +204,8 @@ void add_people_learnt(const Json& training, const std::string& dataset,
   if (training.contains("from")) add_people_learnt(training.at("from"), dataset, people);
 }
 
-/// A warning about tested people whom finished models learnt from: such rows do not show how well a
-/// model does on other people. Empty if there are none.
+/// A warning that finished models were trained with people who are tested now. The rows of such
+/// models do not show how well they do on new people. Empty if there are no such people.
 std::string known_people(const std::vector<FinishedModel>& models, const Comparison& comparison,
                          const std::vector<Fold>& folds) {
   std::set<std::string> tested;
@@ -227,7 +229,7 @@ std::string known_people(const std::vector<FinishedModel>& models, const Compari
   return fmt::format("{}", fmt::join(out, "; "));
 }
 
-/// Opens the run: windows, folds, and a warning if a model was trained on tested people.
+/// Reads the windows, makes the folds, and warns if a model was trained with tested people.
 Result<EvalRun> open_run(const Eval& o, Call& call) {
   auto models = KA_TRY(finished_models(o, call));
   const Learns task = KA_TRY(task_of_all(o, models, call));
@@ -248,8 +250,8 @@ Result<EvalRun> open_run(const Eval& o, Call& call) {
                  std::move(folds)};
 }
 
-/// The name of a cached result: a hash of all that the marks depend on. `model_hash`: of a finished
-/// model; empty: none.
+/// The name of a cached result: a hash of everything on which the marks depend. `model_hash`: the
+/// hash of a finished model; empty: none.
 std::string key_of(const EvalRun& run, const TrainingWanted& training, const Fold& fold,
                    const std::string& model_hash) {
   Json all{cache_version,  run.windows_hash, training.method, training.seed, training.steps,
@@ -262,8 +264,8 @@ std::string key_of(const EvalRun& run, const TrainingWanted& training, const Fol
   return sha256_of(all.dump()).substr(0, 32);
 }
 
-/// The marks from the cache, or computed and written there. A cached file that can't be read is
-/// computed again.
+/// Reads the marks from the cache. If they are missing or damaged, computes them and writes them
+/// there.
 Result<std::string> marks_for(const EvalRun& run, const Trial& trial, const std::string& key,
                               Call& call) {
   FileSystem& files = call.surroundings.files;
@@ -282,7 +284,7 @@ Result<std::string> marks_for(const EvalRun& run, const Trial& trial, const std:
   return made;
 }
 
-/// The rows of a method, or of a model ("model") if there is one.
+/// The table's rows for a method. If `method` is "model", the rows are for the finished model.
 Result<std::vector<MethodMarks>> rows_of(const EvalRun& run, const std::string& method,
                                          const FinishedModel& model, Call& call) {
   const Eval& o = run.options;
@@ -309,7 +311,7 @@ Result<std::vector<MethodMarks>> rows_of(const EvalRun& run, const std::string& 
                   fold.tested};
       if (!o.nodes.empty()) trial.training.nodes = split_at_commas(o.nodes);
       const std::string key = key_of(run, trial.training, fold, model.hash);
-      TrainingWanted trained = trial.training;  // cnn and cnn+project share one training
+      TrainingWanted trained = trial.training;  // cnn and cnn+project need the same training
       trained.method = trained_part(method);
       trial.training.folder = call.common.out + "/models/" + key_of(run, trained, fold, model.hash);
       marks.texts.push_back(KA_TRY(marks_for(run, trial, key, call)));
@@ -318,8 +320,8 @@ Result<std::vector<MethodMarks>> rows_of(const EvalRun& run, const std::string& 
   return run.comparison.sum_up(model.file.empty() ? method : model.file, folds);
 }
 
-/// Adds the rows that are not there yet: every model for fusion brings the filter's rows, which are
-/// needed once.
+/// Adds the rows that the table lacks. Every model for fusion also gives the rows of the filter,
+/// which are needed once.
 void add_new(const std::vector<MethodMarks>& more, std::vector<MethodMarks>& rows) {
   for (const MethodMarks& one : more) {
     const bool known = std::any_of(rows.begin(), rows.end(), [&](const MethodMarks& row) {
@@ -329,8 +331,8 @@ void add_new(const std::vector<MethodMarks>& more, std::vector<MethodMarks>& row
   }
 }
 
-/// Compares all methods and models. The tables are written after each one, so that a stopped run
-/// leaves what it has.
+/// Compares all methods and models. The tables are written after each of them, so that a run that
+/// is stopped leaves the rows so far.
 Result<int> run_eval(Eval& o, Call& call) {
   for (std::string& model : o.models) model = KA_TRY(model_named(model, ""));
   const EvalRun run = KA_TRY(open_run(o, call));

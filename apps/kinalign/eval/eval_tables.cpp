@@ -17,14 +17,14 @@ namespace kinalign {
 
 namespace {
 
-/// An interval over fewer people would be too narrow.
+/// With fewer people the table has no interval, because it would be too narrow.
 constexpr std::size_t least_for_interval = 8;
-/// A terminal shows this number of marks in one table; the others follow in further tables.
+/// The number of marks in one table on a terminal. Further marks follow in further tables.
 constexpr std::size_t most_columns = 6;
-/// If there are more rows of tests, they are only written to files.
+/// If there are more tests, they are written to files but not printed.
 constexpr std::size_t most_printed_tests = 12;
 
-/// The number of people, or folds, with a value in at least one row.
+/// The number of people (or folds) that have a value in at least one row.
 std::size_t count_of_values(const std::vector<MethodMarks>& rows) {
   std::set<std::string> all;
   for (const MethodMarks& row : rows) {
@@ -35,8 +35,8 @@ std::size_t count_of_values(const std::vector<MethodMarks>& rows) {
   return all.size();
 }
 
-/// Adds the mean and the ends of its interval, or the mean and, for several values, the standard
-/// deviation.
+/// Adds the mean and the two ends of its interval. Without an interval, adds the mean and, if there
+/// are several values, the standard deviation.
 void put_mean(const std::vector<double>& values, bool has_interval, std::vector<Cell>& row) {
   if (values.empty()) {
     row.resize(row.size() + (has_interval ? 3 : 2));
@@ -51,7 +51,7 @@ void put_mean(const std::vector<double>& values, bool has_interval, std::vector<
   }
 }
 
-/// The table of these columns, with the means of all rows.
+/// The table of the means of all rows, with these columns.
 Table table_of(const EvalRows& all, std::span<const MarkColumn> columns) {
   const std::size_t count = count_of_values(all.rows);
   const Comparison& comparison = all.comparison;
@@ -81,7 +81,7 @@ Table table_of(const EvalRows& all, std::span<const MarkColumn> columns) {
   return out;
 }
 
-/// The table of single values: a row for each person or fold.
+/// The table of single values, with a row for each person or fold.
 Table people_of(const EvalRows& all) {
   Table out;
   out.columns = {{"method", "method"}, {"tested", "tested"}};
@@ -107,7 +107,7 @@ Table people_of(const EvalRows& all) {
   return out;
 }
 
-/// The table of paired tests between any two methods, for each mark.
+/// The table of paired tests between each two methods, for each mark.
 Table tests_of(const EvalRows& all) {
   Table out;
   out.caption = "differences of two methods, with Wilcoxon's signed-rank test over " +
@@ -129,7 +129,8 @@ Table tests_of(const EvalRows& all) {
   return out;
 }
 
-/// The table of each joint's mean error. Without rows if joints are not marked separately.
+/// The table of the mean error of each joint. It has no rows if the task does not mark joints one
+/// by one.
 Table joints_of(const EvalRows& all) {
   Table out;
   out.caption = "position of each joint, cm";
@@ -147,8 +148,8 @@ Table joints_of(const EvalRows& all) {
   return out;
 }
 
-/// The table of stated radii and the share of errors within them. Without rows if no method states
-/// radii.
+/// The table of the radii that methods state, and of the share of errors within them. It has no
+/// rows if no method states radii.
 Table radii_of(const EvalRows& all) {
   Table out;
   out.caption =
@@ -170,7 +171,7 @@ Table radii_of(const EvalRows& all) {
   return out;
 }
 
-/// Writes a table in all formats of files.
+/// Writes a table as .md, .tex, .csv and .json.
 Result<void> write_all(const Table& table, const std::string& name, Call& call) {
   return write_table(
       table, call.common.out + "/" + name,

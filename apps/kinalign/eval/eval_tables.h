@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tables of `kinalign eval`: means, people, paired tests, joints and radii.
+// The tables of `kinalign eval`: means, values of people, paired tests, joints and radii.
 #pragma once
 
 #include "apps/kinalign/eval/comparison.h"
@@ -9,7 +9,7 @@
 
 namespace kinalign {
 
-/// The rows that are finished, with what the captions say about all of them.
+/// The rows that are finished, and the facts for the captions of all tables.
 struct EvalRows {
   const Comparison& comparison;
   std::string folds;  // "folds of people"
@@ -19,8 +19,8 @@ struct EvalRows {
 /// Writes each table as .md, .tex, .csv and .json into the folder of results.
 Result<void> write_tables(const EvalRows& all, Call& call);
 
-/// Prints the tables; a text splits the marks into tables that fit a terminal. Long tables of tests
-/// are only written to files.
+/// Prints the tables. In the format "text" a wide table is split into several that fit a terminal.
+/// Long tables of tests are written to files only.
 void print_tables(const EvalRows& all, const std::string& format, Call& call);
 
 }  // namespace kinalign
