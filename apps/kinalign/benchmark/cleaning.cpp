@@ -32,28 +32,29 @@ constexpr std::size_t most_bench_windows = std::size_t{4} << 30U;  // a larger f
 constexpr std::size_t least_bench_rows = 8;  // frames; shorter stretches are left out
 constexpr const char *kinect_stream = "kinect", *true_stream = "mocap";
 
-/// The time of a training step with one thread, s. Measured over 150 steps on the twin of scale
-/// 0.02, on a core that other programs used too; an idle machine needs less.
+/// The time of one training step with one thread, s. It was measured over 150 steps on the
+/// simulated data set of scale 0.02. The core also ran other programs, so an idle machine needs
+/// less time.
 struct TrainingSpeed {
   std::string_view method;
   double step_s = 0.0;
 };
-// A method without a row here has an unknown time in the plan.
+// For a method that is not in this table, the plan states no time.
 constexpr std::array<TrainingSpeed, 6> training_speeds{{{"cnn", 0.73},
                                                         {"bra", 2.7},
                                                         {"bra-p", 5.9},
                                                         {"bra-p-plain", 5.9},
                                                         {"refine", 0.24},
                                                         {"refine-linear", 0.28}}};
-constexpr std::int64_t own_steps = 1200;  // the default of every method that cleans
+constexpr std::int64_t own_steps = 1200;  // training steps of a method by default
 
 std::string model_file(const CleaningOptions& o, const std::string& method) {
   return o.folder + "/models/" + method + ".safetensors";
 }
 
-/// The job of kinalign-learn. Its identity does not depend on where the files lie.
+/// Makes the job for kinalign-learn. Its identity does not depend on the folders of the files.
 Json job_of_method(const CleaningOptions& o, const CleaningData& data, const std::string& method) {
-  // `steps` is left out if it is 0: the method's own default then stays in force.
+  // If `steps` is 0, the job does not state it, and the method's default counts.
   Json options{{"seed", o.seed}};
   if (o.steps > 0) options["steps"] = o.steps;
   Json job{{"schema", "kinalign.training_job/1"},
@@ -62,24 +63,24 @@ Json job_of_method(const CleaningOptions& o, const CleaningData& data, const std
            {"truth", true_stream},
            {"learn", data.learnt},
            {"options", options}};
-  // The identity is the hash of all that determines the training: the job and the bytes of the
-  // windows. Paths, threads and the device are added later.
+  // The identity is a hash of all that changes the training: the job so far and the bytes of the
+  // windows. Paths, threads and the device are added later, so they do not change the identity.
   job["identity"] = sha256_of(job.dump() + data.windows_hash);
   return job;
 }
 
-/// True if the model was trained by a job of that identity.
+/// True if a job with this identity has trained the model.
 Result<bool> has_identity(const std::string& bytes, const std::string& file,
                           const std::string& identity) {
-  // The trainer writes the job's identity into the model. A model of another program has none and
-  // does not match.
+  // kinalign-learn writes the identity of its job into the model. A model of another program has no
+  // identity.
   const DenoiseModel model = KA_TRY(read_denoise_model(bytes, file));
   const Json training = Json::parse(model.facts.training, nullptr, false);
   return training.is_object() && training.value("identity", "") == identity;
 }
 
-/// The file of the trained model; trains it if it is missing. A model of another identity is
-/// refused without --force.
+/// Returns the file of the trained model, and trains the model if the file is missing. An existing
+/// model with another identity is refused without --force.
 Result<std::string> trained_method(const CleaningOptions& o, const CleaningData& data,
                                    const std::string& method, Call& call) {
   FileSystem& files = call.surroundings.files;
@@ -87,7 +88,8 @@ Result<std::string> trained_method(const CleaningOptions& o, const CleaningData&
   Json job = job_of_method(o, data, method);
   const auto identity = job.at("identity").get<std::string>();
   std::error_code fault;
-  // A model with the right identity is used again, so a run that was stopped does not train twice.
+  // A model with the right identity is used again, so that a run that was stopped need not repeat
+  // it.
   if (fs::exists(file, fault)) {
     const std::string bytes = KA_TRY(read_whole(files, file, most_model_bytes));
     if (KA_TRY(has_identity(bytes, file, identity))) return file;
@@ -96,27 +98,28 @@ Result<std::string> trained_method(const CleaningOptions& o, const CleaningData&
                            "a model of other takes, seed or steps (--force trains it again)"});
     }
   }
-  // These members say where and on which machine to train. They stay outside of the identity.
+  // These members say where to train. They do not belong to the identity.
   job.update({{"windows", data.windows}, {"device", o.device}});
   call.console.detail("training " + method);
   KA_TRY(train_in(o.folder + "/models/" + method + ".training", std::move(job), file, call));
   return file;
 }
 
-/// The answer of a method: trained, or fitted in closed form.
-/// A network is trained by another program and then answers through its model file. All other
-/// methods are fitted to the training takes in this process.
+/// Returns the function that answers for a method. A network is trained by kinalign-learn and
+/// answers through its model's file. All other methods are fitted to the training takes in this
+/// process.
 Result<Answer> answer_for(const CleaningOptions& o, const CleaningData& data,
                           const std::string& method, Call& call) {
   if (is_trained(method)) {
     std::vector<JointFrames> tested;
     for (const Pair* pair : data.tested) tested.push_back(pair->input);
-    // Methods that differ only in their use of a network share its trained part: "cnn+project" uses
-    // "cnn".
+    // Some methods differ only in the use of a network and share one training: "cnn+project" uses
+    // the network of "cnn".
     const std::string model = KA_TRY(trained_method(o, data, trained_part(method), call));
     return trained_answer(method, model, data.layout, tested, call);
   }
-  // The task names the same people as the training, so all methods learn from the same takes.
+  // The task names the same takes as the jobs of the networks, so all methods learn from the same
+  // data.
   const EvalTask task{data.layout,
                       data.pairs.all,
                       {.method = method,
@@ -131,8 +134,8 @@ Result<Answer> answer_for(const CleaningOptions& o, const CleaningData& data,
   return make_answer(task, call);
 }
 
-/// Marks the answers of a method to all tested stretches. `answer_to(i)`: the function that answers
-/// data.tested[i].
+/// Computes the marks of a method on all tested stretches. answer_to(i) returns the function that
+/// answers for data.tested[i].
 CleanedTakes marked_answers(const std::string& method, const Steadying& steadying,
                             const CleaningData& data, const DenoiseMarker& marker,
                             const std::function<Answer(std::size_t)>& answer_to) {
@@ -143,16 +146,15 @@ CleanedTakes marked_answers(const std::string& method, const Steadying& steadyin
     const Pair& pair = *data.tested[i];
     const Answer answer = answer_to(i);
     Denoised plain = answer(pair.input);
-    // A copy is kept before steadying: figures show the plain answers.
+    // The figures show the plain answers, so a copy is kept before the answers are steadied.
     out.answers.push_back(plain.positions);
     out.marks.push_back(both_marks(marker, steadier, answer, pair, std::move(plain)));
   }
   return out;
 }
 
-/// A column of table 9.
-/// The first three columns are the paper's definitions, all others the well-defined ones
-/// (docs/benchmark.md).
+/// A column of table 9. The first three columns have the definitions of the HFUT-MMD paper.
+/// docs/models.md defines the other columns.
 struct MarksColumn {
   const char *key, *title;
   int decimals;
@@ -170,11 +172,11 @@ constexpr std::array<MarksColumn, 9> marks_columns{
 
 using PersonMarks = std::array<std::optional<double>, marks_columns.size()>;
 
-/// The means over one person's stretches; those of the paper's columns are weighted by frames.
+/// The mean marks over one person's stretches. The paper's marks are means over frames.
 PersonMarks marks_of_person(const CleaningData& data, const CleanedTakes& method,
                             const std::string& person, std::size_t which) {
   std::vector<ProtocolMarks> protocol;
-  // The paper's marks are means over frames. A long stretch therefore weighs more than a short one.
+  // The paper's marks are means over frames, so a long stretch has more weight than a short one.
   std::array<double, 3> sums{};
   double frames = 0.0;
   for (std::size_t i = 0; i < data.tested.size(); ++i) {
@@ -187,16 +189,15 @@ PersonMarks marks_of_person(const CleaningData& data, const CleanedTakes& method
     for (std::size_t k = 0; k < values.size(); ++k) sums[k] += n * values[k];
     frames += n;
   }
-  // The other marks are combined by their own rule, in which a mark may be absent.
+  // protocol_row() takes the means of the other marks, some of which may be missing.
   const ProtocolMeans means = protocol_row(protocol);
   return {sums[0] / frames,   sums[1] / frames,      sums[2] / frames,
           means.position_cm,  means.fitted_cm,       means.bone_cm,
           means.constancy_cm, means.acceleration_mm, means.jitter};
 }
 
-/// E_s of the truth itself, cm: the mean over frames.
-/// The truth's roughness is the value that a good answer should have. It is the same for all
-/// methods, so any method's marks give it.
+/// The smoothness E_s of the truth itself, cm, as a mean over frames. A good answer has the same
+/// value. The truth is the same for all methods, so the marks of any method give it.
 double true_smoothness(const CleaningData& data, const CleanedTakes& method) {
   double sum = 0.0, frames = 0.0;
   for (std::size_t i = 0; i < data.tested.size(); ++i) {
@@ -213,9 +214,9 @@ std::set<std::string> people_of(const std::vector<const Pair*>& pairs) {
   return out;
 }
 
-/// A row of table 9: mean and deviation over people. `which`: 0 plain, 1 steadied.
-/// People are the units of the statistics: frames of one person are too alike to count as
-/// independent. A mark that no stretch has leaves an empty cell.
+/// A row of table 9: mean and deviation over people. `which`: 0 for plain answers, 1 for steadied
+/// ones. Statistics are over people, because frames of one person are not independent. If no
+/// stretch has a mark, its cell is empty.
 std::vector<Cell> marks_row(const CleaningData& data, const CleanedTakes& method,
                             std::size_t which) {
   std::array<std::vector<double>, marks_columns.size()> values;
@@ -226,7 +227,7 @@ std::vector<Cell> marks_row(const CleaningData& data, const CleanedTakes& method
     }
   }
   std::vector<Cell> out{method.method + (which == 1 ? ", steadied" : "")};
-  // Each value gives two cells, mean and deviation. with_joined_deviations() relies on this order.
+  // Each mark gives two cells, mean and deviation. with_joined_deviations() relies on this order.
   for (const auto& one : values) {
     out.push_back(cell_of(mean_of(one)));
     out.push_back(one.empty() ? Cell() : Cell(deviation(one)));
@@ -236,14 +237,14 @@ std::vector<Cell> marks_row(const CleaningData& data, const CleanedTakes& method
 
 }  // namespace
 
-// The order is: cut, read, hash, pair. The hash is that of the file's bytes, since the identity of
-// each model depends on it.
+// The windows are cut, read, hashed and divided into pairs. The identity of each model depends on
+// the hash of the file.
 Result<CleaningData> open_cleaning(const CleaningOptions& o, Call& call) {
   KA_TRY(make_folders(o.folder + "/models"));
   CleaningData out;
   out.windows = o.folder + "/windows.npz";
-  // "0" asks for no least share of valid cells. Methods must cope with missing joints; marks leave
-  // out cells without a truth.
+  // "0": windows need no least share of valid samples. Methods must cope with missing joints, and
+  // marks leave out samples without a truth.
   const WindowsWanted wanted{.data = o.data,
                              .split = o.split,
                              .where = "",
@@ -264,8 +265,8 @@ Result<CleaningData> open_cleaning(const CleaningOptions& o, Call& call) {
       learnt.insert(pair.take);
       learnt_people.insert(pair.subject);
     } else if (pair.part == "test") {
-      // The pointer stays valid: `pairs` is not changed any more, and moving the structure keeps
-      // the vector's memory.
+      // The pointer stays valid, because `pairs` does not change any more. Moving the structure
+      // does not move the elements of the vector.
       out.tested.push_back(&pair);
       tested_takes.insert(pair.take);
     }
@@ -283,21 +284,22 @@ Result<CleaningData> open_cleaning(const CleaningOptions& o, Call& call) {
 
 Result<std::vector<CleanedTakes>> run_methods(const CleaningOptions& o, const CleaningData& data,
                                               Call& call) {
-  // The marker is made from all pairs once, so every method is marked by the same rule.
+  // One marker is made from all pairs, so all methods are marked in the same way.
   const DenoiseMarker marker = KA_TRY(DenoiseMarker::make(data.layout, data.pairs.all));
   std::vector<CleanedTakes> out;
   for (const std::string& method : o.methods) {
     call.console.detail(method);
     const Answer answer = KA_TRY(answer_for(o, data, method, call));
-    // The default steadying has all three parts: mirror image, smoothing and constant bones.
+    // The default steadies in three ways: with the answer to the mirrored input, by smoothing, and
+    // with constant bones.
     out.push_back(marked_answers(method, {}, data, marker, [&](std::size_t) { return answer; }));
   }
-  // Programs run last: a program that fails must not cost the results of a long training.
+  // The user's programs run last: if one fails, the results of a long training exist already.
   for (const std::string& words : o.programs) {
     const ProgramMethod method = KA_TRY(program_method(words));
     call.console.detail(method.name);
     const auto answers = KA_TRY(answers_of_program(method, o.folder, data, call));
-    // A program is run once, so there is no answer to the mirror image.
+    // A program runs once for each stretch, so it gives no answer to the mirrored input.
     out.push_back(marked_answers(method.name, {.mirror = false}, data, marker, [&](std::size_t i) {
       return [&answers, i](const JointFrames&) { return Denoised{answers[i], {}}; };
     }));
@@ -305,13 +307,13 @@ Result<std::vector<CleanedTakes>> run_methods(const CleaningOptions& o, const Cl
   return out;
 }
 
-/// Methods that share a trained part are planned once.
+/// The plan lists a training that several methods share once.
 std::vector<TrainingPlan> training_plan(const CleaningOptions& o) {
   std::vector<TrainingPlan> out;
   std::set<std::string> planned;
   for (const std::string& name : o.methods) {
     const std::string method = trained_part(name);
-    // Two methods may need the same trained part. The first one trains it.
+    // If two methods need the same training, it is listed with the first one.
     if (!is_trained(name) || !planned.insert(method).second) continue;
     std::error_code fault;
     TrainingPlan plan{method, fs::exists(model_file(o, method), fault),
@@ -324,8 +326,8 @@ std::vector<TrainingPlan> training_plan(const CleaningOptions& o) {
   return out;
 }
 
-// The caption holds everything that a reader of the table needs to judge it: people, takes and the
-// meaning of the columns.
+// The caption has everything that a reader needs to judge the table: people, takes and the meaning
+// of the columns.
 Table marks_table(const CleaningData& data, const std::vector<CleanedTakes>& all) {
   Table out;
   out.caption = fmt::format(
@@ -339,7 +341,7 @@ Table marks_table(const CleaningData& data, const std::vector<CleanedTakes>& all
     out.columns.push_back({std::string(column.key) + "_sd", "±", column.decimals});
   }
   for (const CleanedTakes& method : all) {
-    // Each method has two rows that follow each other: plain, then steadied.
+    // Each method has two rows: plain, then steadied.
     for (const std::size_t which : {std::size_t{0}, std::size_t{1}}) {
       out.rows.push_back(marks_row(data, method, which));
     }
@@ -347,7 +349,7 @@ Table marks_table(const CleaningData& data, const std::vector<CleanedTakes>& all
   return out;
 }
 
-// The columns are: method, then pairs of a mean and its deviation.
+// The first column is the method. After it, means and deviations alternate.
 Table with_joined_deviations(const Table& table) {
   Table out;
   out.caption = table.caption;
@@ -355,7 +357,8 @@ Table with_joined_deviations(const Table& table) {
   for (std::size_t c = 1; c + 1 < table.columns.size(); c += 2) {
     out.columns.push_back(table.columns[c]);
   }
-  // A cell with text can't be computed with, so CSV and JSON keep the table with separate columns.
+  // A joined cell is text. CSV and JSON keep separate columns, so that programs can compute with
+  // them.
   for (const auto& row : table.rows) {
     out.rows.push_back({row.front()});
     for (std::size_t c = 1; c + 1 < table.columns.size(); c += 2) {
@@ -372,7 +375,7 @@ std::vector<float> errors_over_time(const CleaningData& data, const Pair& pair,
                                     const std::vector<float>& answer) {
   const std::size_t joints = data.layout.outputs.size();
   const auto places = shared_joints_there(kinect_names(data.layout.outputs));
-  // 100 turns metres into centimetres. Joints without a valid truth do not count.
+  // The factor 100 turns metres into centimetres. Joints without a valid truth do not count.
   std::vector<float> out;
   for (std::size_t t = 0; t < pair.input.frames(); ++t) {
     double sum = 0.0, count = 0.0;

@@ -22,23 +22,23 @@
 
 namespace kinalign {
 
-// A child process sends its result as text.
+// The structure is converted to JSON and back, because a child process returns it as text.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ComparedMotion, take, rate_hz, frames, truth, answers, states,
                                    hidden)
 
 namespace {
 
-// A Kinect has no such joints. Both places show which way the head looks, which its joint alone
-// does not.
+// Nose and crown show in which direction the head looks, which the position of its joint does not.
+// A Kinect has no such joints.
 constexpr float nose_m = 0.14F, crown_m = 0.16F;  // distances from the head's joint
-constexpr double hidden_s = 3.0;  // how long a limb is hidden, and the pause between two limbs
-/// Kinect samples further apart are not interpolated.
+// time for which a limb is hidden, and the pause between two limbs
+constexpr double hidden_s = 3.0;
+/// Samples of a Kinect that are further apart are not interpolated.
 constexpr double kinect_gap_s = 0.2;
 constexpr const char* true_group = "mocap";
 
-/// The indices of the compared joints in a skeleton, found by a Kinect's names or by CMU's.
-/// The truth of a take may be a Kinect-like skeleton or the model's body, whose joints have CMU's
-/// names.
+/// The index of each compared joint in a skeleton. Joints are found by the names of a Kinect, or by
+/// the names of CMU's skeletons, which the bodies of models have.
 Result<std::array<std::size_t, compared_joints>> joints_among(
     const std::vector<std::string>& names) {
   const auto as_kinect = kinect_names(names);
@@ -46,7 +46,7 @@ Result<std::array<std::size_t, compared_joints>> joints_among(
   for (std::size_t p = 0; p < compared_joints; ++p) {
     const std::string wanted(compared_places[p]);
     auto at = index_of(as_kinect, wanted);
-    // A Kinect's name has one equivalent among the joints of a body for fusion (fuse_joints).
+    // fuse_joints lists for each joint of a Kinect the corresponding joint of a body.
     for (const FuseJoint& joint : fuse_joints) {
       if (!at && joint.kinect == wanted) at = index_of(names, std::string(joint.body));
     }
@@ -56,9 +56,10 @@ Result<std::array<std::size_t, compared_joints>> joints_among(
   return out;
 }
 
-/// The rotation of a joint in the world's space.
+/// The rotation of a joint against the world.
 Eigen::Quaternionf turned_in_world(const Clip& clip, std::size_t t, std::size_t joint) {
-  // The loop goes from the joint to the root and multiplies each parent from the left.
+  // The loop goes from the joint to the root and multiplies the rotation of each parent from the
+  // left.
   Eigen::Quaternionf out = Eigen::Quaternionf::Identity();
   for (int j = static_cast<int>(joint); j >= 0;
        j = clip.skeleton.parents[static_cast<std::size_t>(j)]) {
@@ -68,13 +69,11 @@ Eigen::Quaternionf turned_in_world(const Clip& clip, std::size_t t, std::size_t 
   return out;
 }
 
-/// The compared places of all frames, in the world's space.
-using WorldPlaces = std::vector<float>;  // [T,17,3] m
+/// The positions of the compared points in all frames, in the world's coordinates.
+using WorldPlaces = std::vector<float>;  // [frame, point, 3] m
 
-/// The compared places of a clip. Nose and crown lie at fixed distances from the head's joint and
-/// turn with it.
-/// Forward kinematics gives the joints [T,J,3] m. The two places on the head follow from the head's
-/// rotation.
+/// The positions of the compared points of a clip. Forward kinematics gives the joints. Nose and
+/// crown are at fixed distances from the head's joint and follow the head's rotation.
 Result<WorldPlaces> places_of(const Clip& clip) {
   const auto joints = KA_TRY(joints_among(clip.skeleton.joint_names));
   const std::size_t count = clip.skeleton.joints(), frames = clip.frames.size();
@@ -91,7 +90,7 @@ Result<WorldPlaces> places_of(const Clip& clip) {
     const std::size_t head = joints[2];
     const Eigen::Vector3f base(&out[3 * (t * compared_count + 2)]);
     const Eigen::Quaternionf turn = turned_in_world(clip, t, head);
-    // In the head's own space z points ahead and y up.
+    // In the head's own axes z points ahead and y up.
     for (const Eigen::Vector3f& way :
          {Eigen::Vector3f(0.0F, 0.0F, nose_m), Eigen::Vector3f(0.0F, crown_m, 0.0F)}) {
       const Eigen::Vector3f place = base + turn * way;
@@ -101,20 +100,20 @@ Result<WorldPlaces> places_of(const Clip& clip) {
   return out;
 }
 
-/// The places relative to the middle of the hips, with x to the body's left.
+/// Makes the positions relative to the middle of the hips, with x to the body's left.
 BodyPlaces in_body(WorldPlaces places) {
-  // Places 9 and 12 are the hips, 3 and 6 the shoulders. Both pairs give the direction of the
-  // body's left.
+  // Points 9 and 12 are the hips, 3 and 6 the shoulders. Both pairs together show where the body's
+  // left is.
   const BodyJoints joints{{9, 12}, {{9, 12}, {3, 6}}};
   const std::size_t cells = places.size() / 3;
-  // 2 is the state "tracked". Every place is present here, so no frame lacks a direction.
+  // The state 2 means "tracked". All points exist in each frame, so each frame has a direction.
   const JointFrames body{compared_count, places, std::vector<std::uint8_t>(cells, std::uint8_t{2})};
   to_body(body_frames(joints, body), places);
   return places;
 }
 
-/// The skeleton of a take's reference stream, "mocap".
-/// The truth is the take's skeleton, as it was recorded. Runs in the child process.
+/// The truth of a take: its skeleton "mocap" as it was recorded. The function runs in a child
+/// process.
 Result<Clip> true_clip(FileSystem& files, const std::string& path) {
   Take take = KA_TRY(read_take(files, path));
   const auto& groups = take.header.groups;
@@ -131,9 +130,9 @@ Result<Clip> true_clip(FileSystem& files, const std::string& path) {
   return Failure(Error{path, 0, "a skeleton with at least two frames", "fewer frames"});
 }
 
-/// For each frame of the grid the row with the nearest stamp.
-/// Models answer on a grid of their own rate, while the truth has the stamps of its device. Stamps
-/// rise, so one walk over the rows finds all of them.
+/// For each frame of a model, the row of the truth with the nearest stamp. A model answers at its
+/// own frame rate; the truth has the stamps of its device. Both kinds of stamps rise, so one pass
+/// over the rows is enough.
 std::vector<std::size_t> nearest_rows(const std::vector<Time>& stamps, const EvenSpan& span,
                                       double rate_hz) {
   std::vector<std::size_t> out;
@@ -143,14 +142,15 @@ std::vector<std::size_t> nearest_rows(const std::vector<Time>& stamps, const Eve
         std::chrono::duration<double>(static_cast<double>(t) / rate_hz));
     const Time wanted = span.start + since;
     const auto off = [&](std::size_t i) { return std::abs((stamps[i] - wanted).count()); };
-    // A tie goes to the later row. The row never goes back, since the wanted stamps rise as well.
+    // If two rows are equally near, the later one is taken. `row` never decreases, since the wanted
+    // stamps rise.
     while (row + 1 < stamps.size() && off(row + 1) <= off(row)) ++row;
     out.push_back(row);
   }
   return out;
 }
 
-/// The chosen rows of an array [n,width].
+/// The chosen rows of an array of `width` columns.
 std::vector<float> rows_of(const std::vector<float>& values, std::size_t width,
                            const std::vector<std::size_t>& rows) {
   std::vector<float> out;
@@ -161,10 +161,11 @@ std::vector<float> rows_of(const std::vector<float>& values, std::size_t width,
   return out;
 }
 
-/// The truth on a grid: the places, and the rotation of the head in the world.
+/// The truth at a model's frames: the compared points, and the rotation of the head against the
+/// world.
 struct TrueFrames {
-  WorldPlaces places;                    // [T,17,3] m
-  std::vector<Eigen::Quaternionf> head;  // [T]
+  WorldPlaces places;                    // [frame, point, 3] m
+  std::vector<Eigen::Quaternionf> head;  // for each frame
 };
 
 Result<TrueFrames> true_frames(const Clip& clip, const EvenSpan& span, double rate_hz) {
@@ -176,15 +177,14 @@ Result<TrueFrames> true_frames(const Clip& clip, const EvenSpan& span, double ra
   return out;
 }
 
-/// The angle of the body's left about the vertical axis, rad.
+/// The heading of a body, rad: the angle of its left side about the vertical axis.
 double heading_of(const BodyFrame& frame) {
   return static_cast<double>(std::atan2(-frame.sine, frame.cosine));
 }
 
-/// The angle by which the truth's heading is ahead of an answer's, rad: the mean direction over all
-/// frames.
-/// The heading of the nodes' world is arbitrary. A mean of angles is taken over sine and cosine,
-/// since plain angles jump by a full turn.
+/// The mean difference between the headings of the truth and of an answer, rad. The coordinates of
+/// the nodes have an arbitrary heading, so this difference is removed later. The mean is taken over
+/// sine and cosine, since angles jump by a full turn.
 float turned_against(const WorldPlaces& truth, const WorldPlaces& answer) {
   const BodyJoints joints{{9, 12}, {{9, 12}, {3, 6}}};
   const auto frames = [&](const WorldPlaces& places) {
@@ -201,13 +201,12 @@ float turned_against(const WorldPlaces& truth, const WorldPlaces& answer) {
   return static_cast<float>(std::atan2(sine, cosine));
 }
 
-/// Adds a node on the truth's head to `nodes`, as number `n`. Its world is that of the nodes, which
-/// is turned by `yaw` against the truth's.
-/// The orientation, acceleration and angular velocity follow from the truth, without errors of a
-/// sensor. The page states this.
+/// Adds to `nodes` a simulated node on the head, as node `n`. Its orientation, acceleration and
+/// angular velocity are computed from the truth, without the errors of a sensor; the page says so.
+/// `yaw` is the heading of the truth's coordinates relative to those of the nodes.
 void put_head_node(const TrueFrames& truth, float yaw, double rate_hz, std::size_t n,
                    NodeFrames& nodes) {
-  // -yaw turns the truth's world into that of the nodes.
+  // The rotation by -yaw leads from the truth's coordinates to those of the nodes.
   const Eigen::Quaternionf turn(Eigen::AngleAxisf(-yaw, Eigen::Vector3f::UnitY()));
   const std::size_t frames = nodes.frames();
   const auto rate = static_cast<float>(rate_hz);
@@ -217,18 +216,19 @@ void put_head_node(const TrueFrames& truth, float yaw, double rate_hz, std::size
   for (std::size_t t = 0; t < frames; ++t) {
     const std::size_t before = t == 0 ? 0 : t - 1, after = std::min(t + 1, frames - 1);
     const Eigen::Quaternionf now = turn * truth.head[t];
-    // The second differences span 67 ms (two frames to each side at 30 Hz), as in training.
+    // The acceleration is a second difference over two frames to each side (67 ms at 30 Hz), as in
+    // the training of models.
     const std::size_t early = t < 2 ? 0 : t - 2, late = std::min(t + 2, frames - 1);
     Eigen::Vector3f acceleration = Eigen::Vector3f::Zero();
-    // Near both ends the window is not complete. The acceleration is zero there.
+    // Within two frames of either end the acceleration is set to zero.
     if (late - early == 4) {
       acceleration = turn * (place(late) - 2.0F * place(t) + place(early)) * (rate * rate / 4.0F);
     }
-    // The step is the rotation from the frame before to the frame after. It is central, so it has
-    // no delay.
+    // The angular velocity is computed from the frame before to the frame after, so it has no
+    // delay.
     const Eigen::AngleAxisf step(truth.head[before].conjugate() * truth.head[after]);
     float angle = step.angle();
-    // The shorter way round is the real one.
+    // The head turns by less than half a turn in this time, so the smaller of both angles is right.
     if (angle > static_cast<float>(EIGEN_PI)) angle -= static_cast<float>(2.0 * EIGEN_PI);
     const float span = static_cast<float>(std::max<std::size_t>(after - before, 1)) / rate;
     const Eigen::Vector3f angular = step.axis() * (angle / span);
@@ -240,30 +240,30 @@ void put_head_node(const TrueFrames& truth, float yaw, double rate_hz, std::size
               nodes.acceleration.begin() + static_cast<std::ptrdiff_t>(3 * at));
     std::copy(angular.data(), angular.data() + 3,
               nodes.angular_velocity.begin() + static_cast<std::ptrdiff_t>(3 * at));
-    // The computed node is valid in every frame.
+    // The simulated node has a sample in every frame.
     nodes.valid[at] = 1;
   }
 }
 
-/// Runs the work in a child process. Errors without a file name the take.
-/// A crash of HDF5 on one take must not end the run, so each take has a process of its own.
+/// Runs `work` in a child process, so that a crash of HDF5 on one take does not end the run. Errors
+/// that name no file get the name of the take.
 Result<ComparedMotion> guarded(const ComparedTake& take,
                                const std::function<Result<ComparedMotion>()>& work) {
   const auto in_child = [&]() -> Result<std::string> {
-    // Floats are written with enough digits to be read back unchanged.
+    // The JSON has enough digits for floats to be read back unchanged.
     return nlohmann::json(KA_TRY(work().map_error(in_file(take.path)))).dump();
   };
   const std::string text = KA_TRY(run_guarded(GuardLimits{}, blame(take.path), in_child));
   try {
     return nlohmann::json::parse(text).get<ComparedMotion>();
   } catch (const nlohmann::json::exception&) {
-    // JSON has no infinite number; such an answer of a model is written as null.
+    // JSON writes NaN and infinity as null, so such an answer of a model can't be read here.
     return Failure(Error{take.path, 0, "models with finite answers", "NaN or infinite values"});
   }
 }
 
-/// The nodes of a take on the grid, calibrated for that model.
-/// The words tell where the T-pose is and how headings are found ("auto").
+/// The nodes of a take at the model's frames, calibrated for this model. `worn` states where the
+/// T-pose is and how headings are found ("auto").
 Result<NodeFrames> nodes_for(const PoseModel& model, const NamedNodes& named, const WornWords& worn,
                              const EvenSpan& span) {
   const PosedNodes posed =
@@ -271,12 +271,12 @@ Result<NodeFrames> nodes_for(const PoseModel& model, const NamedNodes& named, co
   return on_bones(posed.calibration, posed.even.worn);
 }
 
-/// The answers of all models to a take's nodes. The heading of the head's node is found by a first
-/// answer without it.
+/// The answers of all models to the nodes of a take. A first answer without the head's node shows
+/// the heading of the nodes' coordinates.
 Result<ComparedMotion> poses_of(std::vector<PoseSolver>& solvers, const ComparedTake& take,
                                 FileSystem& files) {
-  // The grid begins with the truth's first frame and has the rate of the models, so truth and
-  // answers share their frames.
+  // The frames begin with the truth's first frame and have the rate of the models, so the truth and
+  // all answers have the same frames.
   const Clip clip = KA_TRY(true_clip(files, take.path));
   const NamedNodes named = KA_TRY(nodes_of_take(files, take.path, {}));
   const double rate_hz = solvers.front().model().layout.rate_hz;
@@ -288,10 +288,10 @@ Result<ComparedMotion> poses_of(std::vector<PoseSolver>& solvers, const Compared
     if (layout.rate_hz != rate_hz) {
       return Failure(Error{"", 0, "models with the same rate", "several rates"});
     }
-    // No take has a node on the head: put_head_node() fills its place below.
+    // No take has a node on the head; put_head_node() simulates it below.
     NodeFrames nodes = KA_TRY(nodes_for(solver.model(), named, {"", "auto"}, span));
     const auto head = std::find(layout.nodes.begin(), layout.nodes.end(), "head");
-    // The first answer uses the real nodes only. Its heading tells how far the nodes' world is
+    // The first answer uses only the real nodes. It shows by how much the nodes' coordinates are
     // turned.
     WorldPlaces places = KA_TRY(places_of(solver.clip(nodes, span.start)));
     if (head != layout.nodes.end()) {
@@ -300,15 +300,15 @@ Result<ComparedMotion> poses_of(std::vector<PoseSolver>& solvers, const Compared
                     nodes);
       places = KA_TRY(places_of(solver.clip(nodes, span.start)));
     }
-    // in_body() removes position and heading: without a camera no node knows them, so they are not
-    // compared.
+    // in_body() removes position and heading of the body. Nodes can't measure them without a
+    // camera, so they are not compared.
     out.answers.push_back(in_body(std::move(places)));
   }
   return out;
 }
 
-/// The limbs that are hidden one after the other, by a Kinect's names.
-/// The order is that of the page's caption: figure 10 shows the right arm first.
+/// The limbs that are hidden one after the other, by the names of a Kinect's joints. The page's
+/// caption states the same order, beginning with the right arm.
 const std::array<std::vector<std::string>, 4>& hidden_limbs() {
   static const std::array<std::vector<std::string>, 4> all{
       {{"ElbowRight", "WristRight", "HandRight"},
@@ -318,10 +318,10 @@ const std::array<std::vector<std::string>, 4>& hidden_limbs() {
   return all;
 }
 
-/// The limb that is hidden in frame `t`; absent in every second stretch.
+/// The limb that is hidden in frame `t`. Empty if no limb is hidden then.
 std::optional<std::size_t> hidden_limb_at(std::size_t t, double rate_hz) {
-  // Stretches of 3 s alternate: none hidden, right arm, none, left arm, and so on. The first 3 s
-  // are whole.
+  // For 3 s no limb is hidden, then for 3 s the right arm, for 3 s none, then the left arm, and so
+  // on.
   const auto stretch = static_cast<std::size_t>(static_cast<double>(t) / rate_hz / hidden_s);
   if (stretch % 2 == 0) return std::nullopt;
   return (stretch / 2) % hidden_limbs().size();
@@ -340,24 +340,23 @@ void hide_limbs(const std::vector<std::string>& joints, double rate_hz, JointFra
     for (std::size_t j = 0; j < joints.size(); ++j) {
       if (!is_hidden(t, rate_hz, joints[j])) continue;
       const std::size_t at = t * joints.size() + j;
-      // A hidden joint looks like one that the Kinect lost: state 0 and zeros as its position.
+      // A hidden joint is like one that the Kinect has lost: its state is 0 and its position zero.
       kinect.seen[at] = 0;
       std::fill_n(kinect.positions.begin() + static_cast<std::ptrdiff_t>(3 * at), 3, 0.0F);
     }
   }
 }
 
-/// Adds the Kinect's own joints as an answer. A missing joint stays at its last place.
-/// This is the baseline of figure 10. Its states go to `out.states`, so that the picture can leave
-/// out missing joints.
+/// Adds the Kinect's own joints as an answer, with which figure 10 compares the others. A missing
+/// joint stays at its last position. `out.states` lets the picture leave out missing joints.
 void put_kinect(const FuseLayout& layout, JointFrames kinect, ComparedMotion& out) {
   const JointFrames seen = kinect;
   fill_missing(kinect, true);
   WorldPlaces places;
   for (std::size_t t = 0; t < kinect.frames(); ++t) {
     for (std::size_t p = 0; p < compared_count; ++p) {
-      // A Kinect has no nose and crown. Their cells hold another joint's position, and state 0
-      // marks them as missing.
+      // A Kinect has no nose and crown. The position of another joint stands in their place, and
+      // the state 0 marks it as missing.
       const auto j = index_of(layout.joints, std::string(compared_places[p]));
       const std::size_t at = t * kinect.joints + j.value_or(0);
       places.insert(places.end(), &kinect.positions[3 * at], &kinect.positions[3 * at] + 3);
@@ -367,8 +366,8 @@ void put_kinect(const FuseLayout& layout, JointFrames kinect, ComparedMotion& ou
   out.answers.push_back(in_body(std::move(places)));
 }
 
-/// The answers to the Kinect alone, to the nodes alone and to both, by one model. Nodes alone show
-/// no lengths, so their answer has the model's mean body.
+/// The answers of one model to the Kinect alone, to the nodes alone and to both. Nodes do not
+/// measure the lengths of bones, so their answer has the model's mean body.
 Result<ComparedMotion> devices_of(Fuser& fuser, const ComparedTake& take, FileSystem& files) {
   const FuseLayout& layout = fuser.model().layout;
   const double rate_hz = layout.nodes.rate_hz;
@@ -376,26 +375,27 @@ Result<ComparedMotion> devices_of(Fuser& fuser, const ComparedTake& take, FileSy
   BothDevices both;
   both.kinect = KA_TRY(points_of_take(files, take.path, {}));
   both.nodes = KA_TRY(nodes_of_take(files, take.path, {}));
-  // The calibration of the nodes uses the whole Kinect: limbs are hidden after it.
+  // The nodes are calibrated with the whole Kinect; limbs are hidden afterwards.
   FusedInput given = KA_TRY(fused_input(fuser.model(), std::move(both), {"", "auto"}));
   hide_limbs(layout.joints, rate_hz, given.input.kinect);
   const EvenSpan span{given.start, given.input.frames()};
   ComparedMotion out{take.name, rate_hz, span.frames, {}, {}, {}, {}};
   out.truth = in_body(KA_TRY(true_frames(clip, span, rate_hz)).places);
   put_kinect(layout, given.input.kinect, out);
-  // One model gives all three answers: a device that is switched off is invalid in every frame.
+  // The model gets all three inputs in the same form: the samples of an unused device are marked as
+  // invalid.
   FuseInput kinect_alone = given.input, nodes_alone = given.input;
   std::fill(kinect_alone.nodes.valid.begin(), kinect_alone.nodes.valid.end(), std::uint8_t{0});
   std::fill(nodes_alone.kinect.seen.begin(), nodes_alone.kinect.seen.end(), std::uint8_t{0});
   const Skeleton mean = fuser.model().body.skeleton;
   for (const FuseInput* input : {&kinect_alone, &nodes_alone, &given.input}) {
-    // The Kinect shows the lengths of bones. An answer without it may not use them.
+    // Only the Kinect measures the lengths of bones, so an answer without it must not use them.
     fuser.use_body(input == &nodes_alone ? mean : given.body);
     out.answers.push_back(in_body(KA_TRY(places_of(fuser.clip(*input, given.start)))));
   }
   for (std::size_t t = 0; t < span.frames; ++t) {
     for (const std::string_view place : compared_places) {
-      // Every place has an entry, although only joints of limbs can be hidden.
+      // `hidden` has an element for each point, although only the joints of limbs are hidden.
       out.hidden.push_back(is_hidden(t, rate_hz, std::string(place)) ? 1 : 0);
     }
   }

@@ -23,25 +23,26 @@ namespace kinalign {
 
 namespace {
 
-/// More takes would make the run long without changing the means much.
+/// The figures use at most this number of takes. More takes would take longer and hardly change the
+/// means.
 constexpr std::size_t most_compared_takes = 12;
-/// Instants that a figure shows.
+/// The number of moments that a figure shows.
 constexpr std::size_t instants = 5;
 constexpr double turn_bend_deg = 180.0 / std::numbers::pi;
-/// Indices in compared_places.
+/// Indices of head and nose in compared_places.
 constexpr std::size_t head_place = 2, nose_place = 15;
 
-/// Joints whose mean distance to the truth is one column.
+/// A group of joints. Their mean distance to the truth is one column of the table.
 struct JointGroup {
   const char *key, *title;
   std::vector<std::size_t> places;
 };
 
-/// The first group is also the one of single frames' errors.
+/// All groups. The errors of single frames are means over the first group.
 const std::vector<JointGroup>& joint_groups() {
   static const std::vector<JointGroup> all{
-      // Places 0, 1, 9 and 12 (trunk and hips) are left out. Bodies are compared with the middle of
-      // the hips in one place.
+      // Points 0, 1, 9 and 12 (trunk and hips) are left out, because bodies are compared with the
+      // middle of the hips at the same position.
       {"all_cm", "all, cm", {2, 3, 4, 5, 6, 7, 8, 10, 11, 13, 14}},
       {"shoulders_cm", "shoulders, cm", {3, 6}},
       {"elbows_cm", "elbows, cm", {4, 7}},
@@ -52,7 +53,7 @@ const std::vector<JointGroup>& joint_groups() {
   return all;
 }
 
-/// The place of a cell. Cells are numbered frame by frame: t * 17 + place.
+/// The position of a point. `cell` is frame * 17 + point.
 Eigen::Vector3d place_at(const BodyPlaces& places, std::size_t cell) {
   return Eigen::Vector3f(&places[3 * cell]).cast<double>();
 }
@@ -61,20 +62,20 @@ double distance_cm(const BodyPlaces& a, const BodyPlaces& b, std::size_t cell) {
   return 100.0 * (place_at(a, cell) - place_at(b, cell)).norm();
 }
 
-/// The direction of look in frame `t`: from the head's joint to the nose.
+/// The direction in which the head looks in frame `t`: from the head's joint to the nose.
 Eigen::Vector3d look_at(const BodyPlaces& places, std::size_t t) {
   const std::size_t first = t * compared_count;
   return place_at(places, first + nose_place) - place_at(places, first + head_place);
 }
 
-/// The angle between the directions in which two heads look in frame `t`, degrees.
+/// The angle between the directions of two heads in frame `t`, degrees.
 double look_apart_deg(const BodyPlaces& a, const BodyPlaces& b, std::size_t t) {
-  // Rounding may put the cosine slightly above 1, for which acos is not defined.
+  // Rounding may make the cosine slightly larger than 1, for which acos is not defined.
   const double cosine = look_at(a, t).normalized().dot(look_at(b, t).normalized());
   return turn_bend_deg * std::acos(std::clamp(cosine, -1.0, 1.0));
 }
 
-/// The mean distance to the truth over the first joint group in one frame, cm.
+/// The error of an answer in one frame, cm: the mean distance to the truth over the first group.
 double frame_error_cm(const ComparedMotion& motion, std::size_t answer, std::size_t t) {
   const auto& all = joint_groups().front().places;
   double sum = 0.0;
@@ -84,8 +85,8 @@ double frame_error_cm(const ComparedMotion& motion, std::size_t answer, std::siz
   return sum / static_cast<double>(all.size());
 }
 
-/// The mean over the cells of all motions for which `counts` is true; absent if there is none.
-/// All cells of all takes weigh the same, so a long take counts more than a short one.
+/// The mean distance over all cells of all takes for which `counts` is true. Empty if there is no
+/// such cell. All cells have the same weight, so a long take counts more than a short one.
 std::optional<double> mean_distance(
     const std::vector<ComparedMotion>& motions, std::size_t answer,
     const std::vector<std::size_t>& places,
@@ -104,7 +105,7 @@ std::optional<double> mean_distance(
   return count > 0.0 ? std::optional(sum / count) : std::nullopt;
 }
 
-/// The mean angle between the answer's and the truth's direction of look, degrees.
+/// The mean angle between the directions of the answer's head and of the truth's head, degrees.
 double mean_look_deg(const std::vector<ComparedMotion>& motions, std::size_t answer) {
   double sum = 0.0, count = 0.0;
   for (const ComparedMotion& motion : motions) {
@@ -116,7 +117,7 @@ double mean_look_deg(const std::vector<ComparedMotion>& motions, std::size_t ans
   return sum / std::max(count, 1.0);
 }
 
-/// Frame `t` as a figure for a picture.
+/// The body of frame `t` for a picture.
 StickFigure figure_of(const BodyPlaces& places, std::size_t t, FigureColour colour) {
   const auto first = places.begin() + static_cast<std::ptrdiff_t>(3 * compared_count * t);
   StickFigure out{colour, false, {first, first + 3 * compared_count}, {}, {}};
@@ -124,8 +125,8 @@ StickFigure figure_of(const BodyPlaces& places, std::size_t t, FigureColour colo
   return out;
 }
 
-/// Frame `t` of the Kinect; missing joints are left out.
-/// Only answers.front() of a device figure is a Kinect, so only it has states.
+/// The body that the Kinect saw in frame `t`; missing joints are left out. answers.front() must be
+/// the Kinect, because only the Kinect has states.
 StickFigure seen_figure_of(const ComparedMotion& motion, std::size_t t) {
   StickFigure out = figure_of(motion.answers.front(), t, FigureColour::kinect);
   const auto first = motion.states.begin() + static_cast<std::ptrdiff_t>(compared_count * t);
@@ -137,28 +138,27 @@ std::string second_of(const ComparedMotion& motion, std::size_t t) {
   return fmt::format("{:.1f} s", static_cast<double>(t) / motion.rate_hz);
 }
 
-/// Five frames, spread evenly over a stretch.
+/// Five frames at equal distances within a stretch.
 std::array<std::size_t, instants> even_instants(std::size_t from, std::size_t to) {
   std::array<std::size_t, instants> out{};
   for (std::size_t i = 0; i < instants; ++i) {
-    // The instants are the middles of five equal parts: the first and the last frame are never
+    // The frames are the middles of five equal parts, so the first and the last frame are never
     // shown.
     out[i] = from + (to - from) * (2 * i + 1) / (2 * instants);
   }
   return out;
 }
 
-/// The takes that a figure is made from.
+/// The takes from which the figures are made.
 struct FigureTakes {
-  std::vector<ComparedTake> nodes, both;  // with nodes; with nodes and a Kinect
-  // False if no test person has such a take. The page then states that the takes are not of test
+  std::vector<ComparedTake> nodes, both;  // takes with nodes; takes with nodes and a Kinect
+  // False if no test person has such a take. The page then says that its takes are not of test
   // people.
   bool nodes_tested = true, both_tested = true;
 };
 
-/// The first takes of test people; if test people have none, the first of all takes.
-/// Takes of test people are preferred, since a model that was trained on this split has not seen
-/// them.
+/// Chooses the first takes of test people, because a model trained with this split has not seen
+/// them. If test people have no takes, chooses the first of all takes.
 std::vector<ComparedTake> preferred(std::vector<std::pair<ComparedTake, bool>> all,
                                     bool& are_tested) {
   are_tested = std::any_of(all.begin(), all.end(), [](const auto& one) { return one.second; });
@@ -175,7 +175,7 @@ Result<FigureTakes> figure_takes(const NodeFigureOptions& o, Call& call) {
   const DatasetIndex index = KA_TRY(open_index(o.data, call));
   const auto takes = KA_TRY(built_takes(files, o.data, index, ""));
   std::set<TakeName> tested;
-  // A take belongs to a test person if the split's part "test" names it.
+  // A take belongs to a test person if the part "test" of the split names the take.
   for (const SplitPart& part : KA_TRY(read_split(files, o.split)).parts) {
     if (part.name == "test") tested.insert(part.takes.begin(), part.takes.end());
   }
@@ -185,7 +185,7 @@ Result<FigureTakes> figure_takes(const NodeFigureOptions& o, Call& call) {
     const std::pair one{
         ComparedTake{to_string(take.name), path_of(o.data, take.name, TakeFile::take)},
         tested.contains(take.name)};
-    // A take with a Kinect and nodes serves all three figures.
+    // A take with a Kinect and nodes can be used for all three figures.
     nodes.push_back(one);
     if (take.summary.has(Modality::kinect)) both.push_back(one);
   }
@@ -195,29 +195,28 @@ Result<FigureTakes> figure_takes(const NodeFigureOptions& o, Call& call) {
   return out;
 }
 
-/// Reads and builds the model. A model that can't be used fails here, before any take is read.
+/// Reads and builds a model. If it can't be used, the run fails here, before any take is read.
 Result<PoseSolver> pose_solver(const std::string& path, Call& call) {
   const std::string bytes = KA_TRY(read_whole(call.surroundings.files, path, most_model_bytes));
   return PoseSolver::make(KA_TRY(read_pose_model(bytes, path)));
 }
 
-/// The motions of takes that could be answered, and the reason why others could not.
+/// The takes for which the models have answered, and the reason why others failed.
 struct AnsweredTakes {
   std::vector<ComparedMotion> motions;
-  bool are_tested = true;  // the takes are of test people
+  bool are_tested = true;  // true: the takes are of test people
   std::size_t failed = 0;
-  std::string fault;  // the fault of the first failed take
+  std::string fault;  // first take that failed
 
-  /// The note for the page; empty if all takes were answered.
+  /// A note for the page. Empty if no take failed.
   std::string note() const {
     if (failed == 0) return "";
     return fmt::format("{} left out: {}.", counted(failed, "take was", "takes were"), fault);
   }
 };
 
-/// Compares all takes. A take that fails is counted, and stops no other.
-/// The page is worth having even if some takes can't be answered. The first fault stands for all of
-/// them in the note.
+/// Runs the models on all takes. A take that fails is only counted, because the page is useful
+/// without it. The note states the reason of the first one.
 AnsweredTakes answered(const std::vector<ComparedTake>& takes, bool are_tested,
                        const std::function<Result<ComparedMotion>(const ComparedTake&)>& compare) {
   AnsweredTakes out;
@@ -245,8 +244,8 @@ const std::string how_compared =
     "truth. The answer has the bone lengths of the model's training people, so a part of the "
     "distance comes from bone lengths.";
 
-/// The beginning of a figure. A figure without data keeps its title and says why it is empty, so
-/// the page has the same parts on every data set. `lacks`: "the nodes".
+/// Begins a figure. A figure without data keeps its title and says why it is empty, so that the
+/// page always has the same parts. `lacks`: what is missing, such as "the nodes".
 PosePictures begun_figure(int number, const std::string& title, const std::string& lacks,
                           const AnsweredTakes& all) {
   PosePictures out;
@@ -259,14 +258,14 @@ PosePictures begun_figure(int number, const std::string& title, const std::strin
   return out;
 }
 
-/// A row of pictures: in each frame an answer, over the truth, and the text below.
+/// A row of pictures. Each picture shows an answer over the truth in one frame, with a text below.
 struct AnswerRow {
   std::string name;
   std::function<StickFigure(std::size_t t)> figure;
   std::function<std::string(std::size_t t)> below;
 };
 
-/// Adds a column for each instant, and the rows. The truth has the last row.
+/// Adds a column for each moment and all rows of pictures. The last row shows the truth.
 void add_pictures(const ComparedMotion& shown, const std::array<std::size_t, instants>& times,
                   const std::vector<AnswerRow>& rows, PosePictures& out) {
   for (const AnswerRow& row : rows) out.rows.emplace_back(row.name, std::vector<PosePicture>{});
@@ -275,7 +274,7 @@ void add_pictures(const ComparedMotion& shown, const std::array<std::size_t, ins
     out.columns.emplace_back(second_of(shown, t), "");
     StickFigure truth = figure_of(shown.truth, t, FigureColour::truth);
     out.rows.back().second.push_back({{truth}, ""});
-    // The truth is drawn first and pale, so the answer lies over it.
+    // The truth is pale and drawn first, so that the answer lies over it.
     truth.is_pale = true;
     for (std::size_t r = 0; r < rows.size(); ++r) {
       out.rows[r].second.push_back({{truth, rows[r].figure(t)}, rows[r].below(t)});
@@ -299,12 +298,12 @@ std::string error_text(const ComparedMotion& shown, std::size_t answer, std::siz
 
 bool is_any(const ComparedMotion&, std::size_t) { return true; }
 
-/// Figure 8: answers of a model for five nodes.
+/// Figure 8: the answers of a model for five nodes.
 PosePictures pose_figure(const AnsweredTakes& all) {
   const auto& motions = all.motions;
   PosePictures out = begun_figure(8, "the pose from five nodes", "the nodes", all);
   if (motions.empty()) return out;
-  // The pictures show the first take that could be answered. The table is over all of them.
+  // The pictures show the first take that has answers. The table is over all takes.
   const ComparedMotion& shown = motions.front();
   out.caption =
       fmt::format("{}, five instants evenly over the take. Blue: the answer to five nodes. {}",
@@ -325,14 +324,14 @@ PosePictures pose_figure(const AnsweredTakes& all) {
   return out;
 }
 
-/// The frames in which the true head looks farthest aside, one in each fifth of the take.
-/// "Aside" is the distance from head to nose to the left or right and up or down. Straight ahead it
-/// is near zero.
+/// The frames in which the true head looks farthest aside, one frame in each fifth of the take. The
+/// measure is the distance from head to nose to the side, up or down; it is near zero straight
+/// ahead.
 std::array<std::size_t, instants> head_instants(const ComparedMotion& motion) {
   std::array<std::size_t, instants> out{};
   for (std::size_t i = 0; i < instants; ++i) {
     double most = -1.0;
-    // One frame of each fifth spreads the instants over the take.
+    // One frame comes from each fifth, so that the frames are spread over the take.
     for (std::size_t t = motion.frames * i / instants; t < motion.frames * (i + 1) / instants;
          ++t) {
       const double aside = look_at(motion.truth, t).head<2>().norm();
@@ -344,14 +343,13 @@ std::array<std::size_t, instants> head_instants(const ComparedMotion& motion) {
   return out;
 }
 
-/// Figure 9: the head in answers without and with a node on it.
+/// Figure 9: the head in answers without and with a node on the head.
 PosePictures head_figure(const AnsweredTakes& all, bool has_head_model) {
   const auto& motions = all.motions;
   PosePictures out = begun_figure(9, "the head without and with a node on it", "the nodes", all);
   if (motions.empty()) return out;
-  out.absent.clear();  // figure 8 has the note
-  // A missing second model is no reason to leave the figure out: the first row still shows the head
-  // without a node.
+  out.absent.clear();  // figure 8 has the note about failed takes
+  // Without the second model the figure still has its first row, the head without a node.
   if (!has_head_model) {
     out.absent =
         "No model with a node on the head was given. kinalign train inertial --nodes "
@@ -368,7 +366,7 @@ PosePictures head_figure(const AnsweredTakes& all, bool has_head_model) {
                        "truth. The two models may have been trained on different people."
                      : "",
       how_compared);
-  // The number of answers is that of the models, in the order of make_pose_figures().
+  // There is one answer for each model, in the order of make_pose_figures().
   const std::vector<std::string> names =
       has_head_model ? std::vector<std::string>{"five nodes", "and one on the head"}
                      : std::vector<std::string>{"five nodes"};
@@ -389,20 +387,20 @@ PosePictures head_figure(const AnsweredTakes& all, bool has_head_model) {
   return out;
 }
 
-// The order must be that of compare_devices(): the Kinect's own joints, then the three answers of
-// the model.
+// The order is that of compare_devices(): the Kinect's own joints, then the three answers of the
+// model.
 constexpr std::array<const char*, 4> device_rows{"Kinect as it is", "Kinect alone", "nodes alone",
                                                  "both"};
 constexpr std::array<FigureColour, 4> device_colours{FigureColour::kinect, FigureColour::kinect,
                                                      FigureColour::imu, FigureColour::both};
 
-/// A cell counts as seen only if the Kinect of the take tracked or inferred the joint in that
-/// frame.
+/// True if the Kinect of the take tracked or inferred this joint in this frame.
 bool is_seen_place(const ComparedMotion& motion, std::size_t cell) {
   return motion.states[cell] != 0;
 }
 
-/// The table of figure 10: mean distances over all, hidden and seen joints.
+/// The table of figure 10: the mean distances over all joints, over hidden joints and over seen
+/// joints.
 Table device_table(const AnsweredTakes& all) {
   const auto& motions = all.motions;
   Table table;
@@ -419,7 +417,8 @@ Table device_table(const AnsweredTakes& all) {
   const auto hidden = [](const ComparedMotion& motion, std::size_t cell) {
     return motion.hidden[cell] != 0;
   };
-  // Each row is one answer; the columns split the same joints into hidden and seen ones.
+  // Each row is one answer. The second and third column divide the joints of the first into hidden
+  // and seen ones.
   for (std::size_t a = 0; a < device_rows.size(); ++a) {
     table.rows.push_back({std::string(device_rows[a]),
                           cell_of(mean_distance(motions, a, joints, is_any)),
@@ -429,8 +428,8 @@ Table device_table(const AnsweredTakes& all) {
   return table;
 }
 
-/// The first stretch in which a limb is hidden; the whole motion if nothing is hidden.
-/// The picture shows one hidden stretch only, so that all instants are about the same limb.
+/// The first stretch in which a limb is hidden. All pictures are from this stretch, so that they
+/// show the same limb. If no limb is hidden, the stretch is the whole motion.
 std::pair<std::size_t, std::size_t> first_hidden(const ComparedMotion& motion) {
   const auto is_hidden_frame = [&](std::size_t t) {
     const auto first = motion.hidden.begin() + static_cast<std::ptrdiff_t>(t * compared_count);
@@ -443,7 +442,7 @@ std::pair<std::size_t, std::size_t> first_hidden(const ComparedMotion& motion) {
   return from < to ? std::pair(from, to) : std::pair(std::size_t{0}, motion.frames);
 }
 
-/// Figure 10: answers to a Kinect, to nodes and to both, while a limb is hidden.
+/// Figure 10: the answers to a Kinect, to nodes and to both, while a limb is hidden.
 PosePictures device_figure(const AnsweredTakes& all) {
   const auto& motions = all.motions;
   PosePictures out = begun_figure(10, "a Kinect, nodes, and both, while the Kinect loses a limb",
@@ -457,8 +456,8 @@ PosePictures device_figure(const AnsweredTakes& all) {
       shown.take, second_of(shown, from), second_of(shown, to), how_compared);
   std::vector<AnswerRow> rows;
   for (std::size_t a = 0; a < device_rows.size(); ++a) {
-    // Only the first row is the raw Kinect: its hidden joints are left out instead of standing
-    // still.
+    // The first row shows the Kinect itself. Its hidden joints are left out and not drawn at their
+    // last position.
     rows.push_back({device_rows[a],
                     [&shown, a](std::size_t t) {
                       return a == 0 ? seen_figure_of(shown, t)
@@ -471,8 +470,8 @@ PosePictures device_figure(const AnsweredTakes& all) {
   return out;
 }
 
-/// The path of a model: the given one, else the shipped one. Empty if neither exists.
-/// A shipped model makes the figures work without any flag.
+/// The path of a model: the given one, else the model that comes with kinalign. Empty if neither
+/// exists. The figures therefore need no flags.
 std::string model_or_shipped(const std::string& given, const std::string& name) {
   if (!given.empty()) return given;
   return shipped_model(name).value_or("");
@@ -483,10 +482,10 @@ PosePictures without_model(PosePictures figure, const std::string& how) {
   return figure;
 }
 
-/// Figure 10, or the note that no model is there for it.
+/// Makes figure 10, or a note that its model is missing.
 Result<PosePictures> make_device_figure(const NodeFigureOptions& o, const FigureTakes& takes,
                                         Call& call) {
-  // A fusion model is needed for all rows but the first, so without one the whole figure is left
+  // All rows but the first need a model for fusion, so without a model the whole figure is left
   // out.
   const std::string path = model_or_shipped(o.fuse_model, "fuse");
   if (path.empty()) {
@@ -500,7 +499,7 @@ Result<PosePictures> make_device_figure(const NodeFigureOptions& o, const Figure
   }));
 }
 
-/// Figures 8 and 9, or notes that no model is there for them.
+/// Makes figures 8 and 9, or notes that their models are missing.
 Result<std::vector<PosePictures>> make_pose_figures(const NodeFigureOptions& o,
                                                     const FigureTakes& takes, Call& call) {
   const std::string path = model_or_shipped(o.pose_model, "pose");
@@ -515,7 +514,7 @@ Result<std::vector<PosePictures>> make_pose_figures(const NodeFigureOptions& o,
   if (!with_head.empty()) {
     solvers.push_back(KA_TRY(pose_solver(with_head, call)));
     const auto& nodes = solvers.back().model().layout.nodes;
-    // A model without this node would give the same answer as the first one, under a wrong title.
+    // The second model must have a node on the head; otherwise the figure's title would be wrong.
     if (std::find(nodes.begin(), nodes.end(), "head") == nodes.end()) {
       return Failure(
           Error{with_head, 0, "a model with a node on the head", "a model without this node"});
@@ -524,14 +523,14 @@ Result<std::vector<PosePictures>> make_pose_figures(const NodeFigureOptions& o,
   const AnsweredTakes all =
       answered(takes.nodes, takes.nodes_tested,
                [&](const ComparedTake& take) { return compare_poses(solvers, take, call); });
-  // Both figures come from the same answers, so each take is read once.
+  // Both figures show the same answers, so each take is read once.
   return std::vector<PosePictures>{pose_figure(all), head_figure(all, solvers.size() > 1)};
 }
 
 }  // namespace
 
 Result<std::vector<PosePictures>> node_figures(const NodeFigureOptions& o, Call& call) {
-  // The figures stand on the page in this order: 8, 9, 10.
+  // The page shows the figures in the order 8, 9, 10.
   const FigureTakes takes = KA_TRY(figure_takes(o, call));
   auto out = KA_TRY(make_pose_figures(o, takes, call));
   out.push_back(KA_TRY(make_device_figure(o, takes, call)));

@@ -20,22 +20,22 @@ namespace kinalign {
 
 namespace {
 
-/// A point of the error curve is the mean over this time.
+/// Each point of the error curve is the mean over this time.
 constexpr float bin_s = 0.5F;
-/// The moving bodies show this much of a take.
+/// The moving bodies show at most this much of a take.
 constexpr double most_moving_s = 30.0;
-// Speeds are differences over this time to each side of a frame.
+// Speeds are computed from positions this much before and after a frame.
 constexpr double half_turn_window_s = 0.25;
 
 /// The joints that show what a person does.
 struct ActingJoints {
   std::size_t wrist_left = 0, wrist_right = 0;
   std::array<std::size_t, 2> hips{}, shoulders{};
-  std::vector<std::size_t> all;  // all shared joints
+  std::vector<std::size_t> all;  // all joints that a Kinect and the truth share
 };
 
-/// Absent if a joint is missing.
-/// Without all six joints no instant can be chosen, and the page shows the reason.
+/// Finds these joints. Empty if one of the six is missing; then no moment can be chosen, and the
+/// page says why.
 std::optional<ActingJoints> acting_joints(const std::vector<std::string>& outputs) {
   const auto names = kinect_names(outputs);
   std::array<std::size_t, 6> found{};
@@ -53,9 +53,8 @@ std::optional<ActingJoints> acting_joints(const std::vector<std::string>& output
   return out;
 }
 
-/// The truth of a stretch, with the quantities by which instants are chosen.
-/// One object serves one stretch. It holds references, so data, joints and pair must outlive it. An
-/// instant is scored only if is_whole() is true.
+/// The truth of one stretch, with the quantities by which moments are chosen. Only frames for which
+/// is_whole() is true may be chosen. The arguments must live longer than this object.
 class TrueMotion {
  public:
   TrueMotion(const CleaningData& data, const ActingJoints& joints, const Pair& pair)
@@ -63,15 +62,15 @@ class TrueMotion {
         joints_(joints),
         count_(data.layout.outputs.size()),
         rate_hz_(data.layout.rate_hz) {
-    // 2 is the state "tracked": every joint takes part in the directions.
+    // The state 2 means "tracked", so every joint counts for the direction of the body.
     JointFrames body{count_, pair.truth,
                      std::vector<std::uint8_t>(pair.valid.size(), std::uint8_t{2})};
-    // A body without hips and shoulders has no direction. turning() is then 0 everywhere.
+    // A body without hips and shoulders has no direction, so turning() always returns 0.
     if (const auto found = body_joints(data.layout.outputs)) frames_ = body_frames(*found, body);
   }
 
   std::size_t frames() const { return pair_.input.frames(); }
-  // True if all shared joints are valid.
+  // True if all shared joints are valid in frame `t`.
   bool is_whole(std::size_t t) const {
     return std::all_of(joints_.all.begin(), joints_.all.end(),
                        [&](std::size_t j) { return pair_.valid[t * count_ + j] != 0; });
@@ -83,7 +82,7 @@ class TrueMotion {
   double height(std::size_t t, const std::array<std::size_t, 2>& both) const {
     return 0.5 * static_cast<double>(place(t, both[0])[1] + place(t, both[1])[1]);
   }
-  /// The speed, m/s: mean over joints, between a quarter of a second before and after.
+  /// The mean speed of the joints, m/s, between a quarter of a second before and after the frame.
   double speed(std::size_t t) const {
     const std::size_t a = earlier(t), b = later(t);
     double sum = 0.0;
@@ -93,12 +92,12 @@ class TrueMotion {
     }
     return sum / static_cast<double>(joints_.all.size()) / seconds(a, b);
   }
-  /// The turning speed, rad/s, positive to the person's left.
+  /// The turning speed of the body, rad/s. A turn to the person's left is positive.
   double turning(std::size_t t) const {
     if (frames_.empty()) return 0.0;
     const std::size_t a = earlier(t), b = later(t);
     const double turned = heading(b) - heading(a);
-    // The remainder keeps the shorter way round: a heading jumps by a full turn at the back.
+    // Headings jump by a full turn; the remainder gives the smaller of both possible angles.
     return std::remainder(turned, 2.0 * std::numbers::pi) / seconds(a, b);
   }
 
@@ -106,14 +105,14 @@ class TrueMotion {
   std::size_t window() const {
     return std::max<std::size_t>(static_cast<std::size_t>(half_turn_window_s * rate_hz_), 1);
   }
-  // The window is cut at both ends of the stretch; seconds() returns the real length.
+  // At the ends of the stretch the time is shorter; seconds() returns the real time.
   std::size_t earlier(std::size_t t) const { return t < window() ? 0 : t - window(); }
   std::size_t later(std::size_t t) const { return std::min(t + window(), frames() - 1); }
   double seconds(std::size_t a, std::size_t b) const {
     return static_cast<double>(std::max<std::size_t>(b - a, 1)) / rate_hz_;
   }
-  /// The angle of the body's left, rad. The left is (cosine, 0, sine): +x at 0. Seen from above, a
-  /// turn to the left goes from +x to -z.
+  /// The heading of the body in frame `t`, rad: the angle of the direction to its left, (cosine, 0,
+  /// sine). The angle is 0 at +x. Seen from above, a turn to the left leads from +x to -z.
   double heading(std::size_t t) const {
     return static_cast<double>(std::atan2(-frames_[t].sine, frames_[t].cosine));
   }
@@ -125,28 +124,27 @@ class TrueMotion {
   std::vector<BodyFrame> frames_;
 };
 
-/// A column of table 8: it shows the frame with the highest score.
+/// A column of table 8. It shows the frame in which `score` is highest.
 struct PoseSearch {
   const char* name;
   std::function<double(const TrueMotion&, const ActingJoints&, std::size_t)> score;
 };
 
-/// The five instants: each score is highest where the pose is clearest.
+/// The five kinds of moments. Each score is highest in the frame that shows the pose most clearly.
 std::vector<PoseSearch> pose_searches() {
   using Motion = const TrueMotion&;
   using Joints = const ActingJoints&;
-  // A trunk's height is the difference between shoulders and hips: largest when upright, smallest
-  // when bent.
+  // The height of the shoulders above the hips is largest for an upright trunk and smallest for a
+  // bent one.
   const auto trunk = [](Motion m, Joints j, std::size_t t) {
     return m.height(t, j.shoulders) - m.height(t, j.hips);
   };
-  // y is up, so the second coordinate is the height.
+  // The axis y points up, so the second coordinate is the height.
   const auto hands = [](Motion m, Joints j, std::size_t t) {
     return std::array{static_cast<double>(m.place(t, j.wrist_left)[1]),
                       static_cast<double>(m.place(t, j.wrist_right)[1])};
   };
-  // The scores have different units, which does not matter: only scores of the same search are
-  // compared.
+  // Only scores of the same kind are compared, so their units may differ.
   return {{"standing",
            [=](Motion m, Joints j, std::size_t t) {
              const auto [left, right] = hands(m, j, t);
@@ -164,15 +162,16 @@ std::vector<PoseSearch> pose_searches() {
 }
 
 struct ChosenFrame {
-  std::size_t pair = 0, frame = 0;  // pair: index in data.tested
+  std::size_t pair = 0, frame = 0;  // index in data.tested, and frame
   double score = -std::numeric_limits<double>::infinity();
 };
 
-/// The best frame for each search. The first and last half second of a stretch are left out.
+/// The best frame for each kind of moment. The first and last half second of a stretch are left
+/// out.
 std::vector<ChosenFrame> choose_frames(const CleaningData& data, const ActingJoints& joints,
                                        const std::vector<PoseSearch>& searches) {
   std::vector<ChosenFrame> out(searches.size());
-  // The edge is longer than half a window, so speed() and turning() always have a whole window.
+  // Half a second is longer than the time that speed() and turning() need before and after a frame.
   const auto edge = static_cast<std::size_t>(0.5 * data.layout.rate_hz);
   for (std::size_t p = 0; p < data.tested.size(); ++p) {
     const TrueMotion motion(data, joints, *data.tested[p]);
@@ -180,7 +179,7 @@ std::vector<ChosenFrame> choose_frames(const CleaningData& data, const ActingJoi
       if (!motion.is_whole(t)) continue;
       for (std::size_t s = 0; s < searches.size(); ++s) {
         const double score = searches[s].score(motion, joints, t);
-        // The first of equal frames wins, so the choice does not depend on anything but the data.
+        // Of frames with the same score the first is taken, so that the choice is always the same.
         if (score > out[s].score) out[s] = {p, t, score};
       }
     }
@@ -188,9 +187,8 @@ std::vector<ChosenFrame> choose_frames(const CleaningData& data, const ActingJoi
   return out;
 }
 
-/// The origin of a picture: below the truth's hips, at the height of its lowest joint.
-/// The Kinect and the answers use the truth's origin as well, so an error of position can be seen
-/// in the picture.
+/// The origin of a picture: below the true hips, at the height of the truth's lowest joint. The
+/// Kinect and all answers are drawn with the same origin, so that errors of position are visible.
 std::array<float, 3> origin_of(const CleaningData& data, const ActingJoints& joints,
                                const ChosenFrame& at) {
   const TrueMotion motion(data, joints, *data.tested[at.pair]);
@@ -203,20 +201,20 @@ std::array<float, 3> origin_of(const CleaningData& data, const ActingJoints& joi
   return {0.5F * (left[0] + right[0]), lowest, 0.5F * (left[2] + right[2])};
 }
 
-/// Frame `t` of an array [T,J,3], relative to the origin.
+/// Frame `t` of an array [frame, joint, 3], relative to the origin.
 StickFigure figure_at(const std::vector<float>& positions, std::size_t t,
                       const std::vector<int>& parents, const std::array<float, 3>& origin,
                       FigureColour colour) {
   StickFigure out{colour, false, {}, parents, {}};
   const std::size_t first = 3 * t * parents.size();
   for (std::size_t i = 0; i < 3 * parents.size(); ++i) {
-    // i % 3 selects the coordinate: x, y, z.
+    // The index i % 3 is the coordinate: x, y or z.
     out.positions.push_back(positions[first + i] - origin[i % 3]);
   }
   return out;
 }
 
-/// The states decide how the page draws each joint: dashed where it is inferred.
+/// The body that the Kinect saw. The page draws a joint with state "inferred" dashed.
 StickFigure kinect_at(const CleaningData& data, const ChosenFrame& at,
                       const std::array<float, 3>& origin) {
   const JointFrames& input = data.tested[at.pair]->input;
@@ -227,7 +225,7 @@ StickFigure kinect_at(const CleaningData& data, const ChosenFrame& at,
   return out;
 }
 
-/// The second line of a column's head: person, action and time.
+/// The second line of a column's heading: person, action and time.
 std::string where_of(const CleaningData& data, const ChosenFrame& at) {
   const Pair& pair = *data.tested[at.pair];
   return fmt::format("sub-{} {}, {:.1f} s", pair.subject, pair.action,
@@ -243,18 +241,19 @@ std::size_t longest_stretch(const CleaningData& data) {
   return out;
 }
 
-/// The joints of a body that a Kinect has too; only these are drawn.
+/// The joints of a body that are drawn: those that a Kinect has, too.
 struct DrawnJoints {
   std::vector<std::size_t> joints;  // indices in the body
   std::vector<int> parents;         // indices in `joints`
 };
 
-/// The joints with a Kinect's names, and their parents among themselves.
+/// Finds the joints that have names of a Kinect, and the parent of each among them.
 DrawnJoints drawn_joints(const std::vector<std::string>& names) {
   DrawnJoints out;
   std::vector<std::string> kept;
   const auto called = kinect_names(names);
-  // Fingers and other joints without an equivalent are left out, in the truth and in the answers.
+  // Fingers and other joints that a Kinect does not have are left out, in the truth and in the
+  // answers.
   for (std::size_t j = 0; j < called.size(); ++j) {
     if (std::find(kinect_joints.begin(), kinect_joints.end(), called[j]) == kinect_joints.end()) {
       continue;
@@ -266,7 +265,7 @@ DrawnJoints drawn_joints(const std::vector<std::string>& names) {
   return out;
 }
 
-/// A body without a name from the first `frames` frames of an array [T,joints,3].
+/// Makes a body without a name from the first `frames` frames of an array [frame, joint, 3].
 MovingBody moving_body(const DrawnJoints& drawn, const std::vector<float>& positions,
                        std::size_t joints, std::size_t frames) {
   MovingBody out;
@@ -302,8 +301,8 @@ PosePictures pose_table(const CleaningData& data, const std::vector<CleanedTakes
   const auto chosen = choose_frames(data, *joints, searches);
   std::vector<StickFigure> truths;
   std::vector<std::array<float, 3>> origins;
-  // The first row shows what all methods were given. The rows of the methods follow, and the truth
-  // is the last.
+  // The first row shows the input of all methods, the Kinect. The rows of the methods follow, and
+  // the last row is the truth.
   out.rows.emplace_back("Kinect", std::vector<PosePicture>{});
   for (std::size_t c = 0; c < chosen.size(); ++c) {
     out.columns.emplace_back(searches[c].name, where_of(data, chosen[c]));
@@ -318,7 +317,7 @@ PosePictures pose_table(const CleaningData& data, const std::vector<CleanedTakes
       const auto& [p, t, score] = chosen[c];
       StickFigure behind = truths[c];
       behind.is_pale = true;
-      // The number below a picture is that method's error in this very frame.
+      // The number below a picture is the error of this method in this frame.
       const float cm = errors_over_time(data, *data.tested[p], method.answers[p])[t];
       out.rows.back().second.push_back(
           {{behind,
@@ -331,7 +330,8 @@ PosePictures pose_table(const CleaningData& data, const std::vector<CleanedTakes
   return out;
 }
 
-// A last bin that is not full is left out, since it would be noisier than all others.
+// The last time of less than half a second is left out, since its mean would be noisier than the
+// others.
 ErrorPlot error_plot(const CleaningData& data, const std::vector<CleanedTakes>& all) {
   const std::size_t longest = longest_stretch(data);
   const Pair& pair = *data.tested[longest];
@@ -358,7 +358,7 @@ ErrorPlot error_plot(const CleaningData& data, const std::vector<CleanedTakes>& 
 SideBySide side_by_side(const CleaningData& data, const std::vector<CleanedTakes>& all) {
   const std::size_t longest = longest_stretch(data);
   const Pair& pair = *data.tested[longest];
-  // The page holds every frame of every body, so its size grows with this time.
+  // The page contains every frame of every body, so its size grows with this time.
   const auto most = static_cast<std::size_t>(most_moving_s * data.layout.rate_hz);
   const std::size_t frames = std::min(pair.input.frames(), most);
   SideBySide out;
@@ -377,7 +377,7 @@ SideBySide side_by_side(const CleaningData& data, const std::vector<CleanedTakes
   MovingBody kinect = moving_body(seen, pair.input.positions, pair.input.joints, frames);
   kinect.name = "Kinect";
   kinect.colour = FigureColour::kinect;
-  // Only the Kinect has states: an answer has a value for every joint.
+  // Only the Kinect has states; an answer has a position for every joint.
   for (std::size_t t = 0; t < frames; ++t) {
     for (const std::size_t j : seen.joints) {
       kinect.states.push_back(pair.input.seen[t * pair.input.joints + j]);
@@ -389,8 +389,7 @@ SideBySide side_by_side(const CleaningData& data, const std::vector<CleanedTakes
     MovingBody body = moving_body(answered, answer, joints, frames);
     body.name = method.method;
     body.cm = errors_over_time(data, pair, answer);
-    // A stretch shorter than `most_moving_s` has fewer frames; the errors are cut to the frames
-    // that are shown.
+    // The errors are cut to the frames that are shown.
     body.cm.resize(frames);
     out.bodies.push_back(std::move(body));
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Table 8, the errors over time and the moving bodies: the page's part about methods that clean a
-// Kinect.
+// The part of the page about methods that clean a Kinect: table 8, the errors over time and the
+// moving bodies.
 #pragma once
 
 #include "apps/kinalign/benchmark/cleaning.h"
@@ -11,17 +11,17 @@
 
 namespace kinalign {
 
-/// Rows: the Kinect, each method (not steadied), the truth. Columns: an instant each of standing,
-/// waving, bending, turning right and turning left, chosen by the truth of all tested takes.
-/// Only the truth chooses the instants, so no method can be favoured by the choice.
+/// Makes table 8. Its rows are the Kinect, each method (not steadied) and the truth. Its columns
+/// are moments of standing, waving, bending, turning right and turning left. Only the truth decides
+/// which moments are shown, so the choice favours no method.
 PosePictures pose_table(const CleaningData& data, const std::vector<CleanedTakes>& all);
 
-/// The errors over the longest tested stretch, as means over half a second.
+/// Plots the errors over the longest tested stretch, as means over half a second.
 ErrorPlot error_plot(const CleaningData& data, const std::vector<CleanedTakes>& all);
 
-/// The first half minute of the longest tested stretch: the truth, the Kinect, each method (not
-/// steadied). Fingers are left out.
-/// The bodies of the page's player. They have one clock, so all pictures turn and move together.
+/// Makes the moving bodies of the page: the first half minute of the longest tested stretch, for
+/// the truth, the Kinect and each method (not steadied). Fingers are left out. All bodies move and
+/// turn together.
 SideBySide side_by_side(const CleaningData& data, const std::vector<CleanedTakes>& all);
 
 }  // namespace kinalign

@@ -18,24 +18,24 @@ namespace kinalign {
 
 namespace {
 
-/// A larger answer is refused.
+/// A larger answer of a program is refused.
 constexpr std::size_t most_answer_bytes = std::size_t{1} << 30U;
 
-/// The values as bytes in the machine's order. NPZ type names such as "<f4" promise little-endian
-/// numbers.
+/// The bytes of the values. The machine must be little-endian, since the NPZ types such as "<f4"
+/// mean little-endian numbers.
 template <class T>
 std::string_view bytes_of_values(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
-/// Writes the program's input: positions, seen, joint_names, output_names, rate_hz.
+/// Writes the input of a program: positions, seen, joint_names, output_names, rate_hz.
 Result<void> write_question(const CleaningData& data, const Pair& pair, const std::string& path,
                             Call& call) {
   const std::uint64_t frames = pair.input.frames(), joints = pair.input.joints;
   const NpzTexts inputs = npz_texts("joint_names", data.layout.inputs),
                  outputs = npz_texts("output_names", data.layout.outputs);
   const std::vector<double> rate{data.layout.rate_hz};
-  // The arrays are appended in the order in which they were declared.
+  // The arrays are appended in the order in which create() lists them.
   NpzWriter writer =
       KA_TRY(NpzWriter::create(call.surroundings.files, path, Overwrite::yes,
                                {npz_numbers("positions", Stored::float32, {frames, joints, 3}),
@@ -49,14 +49,14 @@ Result<void> write_question(const CleaningData& data, const Pair& pair, const st
   return writer.finish();
 }
 
-/// Reads "positions" from the program's NPZ. Fails for another shape and for numbers that are not
-/// finite.
+/// Reads "positions" from the NPZ of a program. Fails if the array has another shape or contains
+/// NaN or infinity.
 Result<std::vector<float>> read_answer(const std::string& path, std::size_t frames,
                                        std::size_t joints, Call& call) {
   const std::string bytes = KA_TRY(read_whole(call.surroundings.files, path, most_answer_bytes));
   const auto arrays = KA_TRY(stored_arrays(bytes, path));
   const auto positions = arrays.find("positions");
-  // The program must answer each frame of the stretch for each joint in output_names.
+  // The program must give a position for each frame of the stretch and each joint in output_names.
   const std::vector<std::uint64_t> shape{frames, joints, 3};
   if (positions != arrays.end() && positions->second.header.shape == shape &&
       positions->second.header.kind == 'f') {
@@ -77,7 +77,7 @@ Result<std::vector<float>> read_answer(const std::string& path, std::size_t fram
 Result<ProgramMethod> program_method(const std::string& words) {
   const std::size_t equals = words.find('=');
   const std::string name = words.substr(0, equals);
-  // The name becomes a folder and a row of the table, so it may contain no '/' and no space.
+  // The name becomes a folder and a row of the table, so it must not contain '/' or spaces.
   const auto is_fit = [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; };
   if (equals == std::string::npos || name.empty() || equals + 1 == words.size() ||
       !std::all_of(name.begin(), name.end(), is_fit)) {
@@ -95,10 +95,11 @@ Result<std::vector<std::vector<float>>> answers_of_program(const ProgramMethod& 
   std::error_code ignored;
   for (const Pair* pair : data.tested) {
     const std::string question = below + "/input.npz", answer = below + "/output.npz";
-    // An answer of the stretch before would be taken for this one if the program wrote nothing.
+    // The old answer is removed: if the program writes nothing, the answer to the previous stretch
+    // must not be read.
     std::filesystem::remove(answer, ignored);
     KA_TRY(write_question(data, *pair, question, call));
-    // Standard output goes to stderr, since --json owns stdout.
+    // The program's stdout goes to stderr, because stdout is for --json.
     const int code = wait_for_child(
         KA_TRY(start_child(method.program, {method.program, question, answer}, 2, 2)));
     if (code != 0) {
@@ -109,7 +110,7 @@ Result<std::vector<std::vector<float>>> answers_of_program(const ProgramMethod& 
         KA_TRY(read_answer(answer, pair->input.frames(), data.layout.outputs.size(), call)));
   }
   std::filesystem::remove_all(below, ignored);
-  std::filesystem::remove(folder + "/programs", ignored);  // only if it is empty
+  std::filesystem::remove(folder + "/programs", ignored);  // works only if the folder is empty
   return out;
 }
 

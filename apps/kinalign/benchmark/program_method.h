@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A user's own method: a program that reads a Kinect's joints and writes the corrected ones.
+// A user's own method: a program that reads the joints of a Kinect and writes better ones.
 #pragma once
 
 #include "apps/kinalign/benchmark/cleaning.h"
@@ -9,20 +9,19 @@
 
 namespace kinalign {
 
-/// A method from outside of kinalign. Any program that can read and write NPZ (NumPy) can be
-/// compared.
+/// The name and the program of a user's method. Any program that can read and write NPZ (NumPy) can
+/// be compared.
 struct ProgramMethod {
   std::string name, program;
 };
 
-/// Parses "NAME=PROGRAM". Fails for another text, and if the name is not made of letters, digits,
-/// '-' and '_'.
+/// Parses "NAME=PROGRAM". The name may have letters, digits, '-' and '_'. Fails for any other text.
 Result<ProgramMethod> program_method(const std::string& words);
 
-/// The program's answers [T,Jout,3] m to each tested stretch. PROGRAM is started for each with the
-/// names of two NPZ files: it reads the first (docs/benchmark.md) and writes "positions" into the
-/// second. Fails if it does not end with exit code 0 or writes another shape.
-/// The folder with both files is removed at the end. It is kept if the program fails.
+/// The program's answers [frame, joint, 3] in m to each tested stretch. PROGRAM is started once for
+/// each stretch with the names of two NPZ files. It reads the first one (docs/benchmark.md) and
+/// writes "positions" into the second one. Fails if the exit code is not 0 or the shape is wrong.
+/// The folder with both files is removed at the end, but kept after a failure.
 Result<std::vector<std::vector<float>>> answers_of_program(const ProgramMethod& method,
                                                            const std::string& folder,
                                                            const CleaningData& data, Call& call);

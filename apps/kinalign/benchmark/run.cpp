@@ -29,18 +29,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A page of a benchmark is smaller. The limit keeps check_page() from reading a large foreign file.
+// The largest file that check_page() reads; a page of a benchmark is smaller.
 constexpr std::size_t longest_page = std::size_t{1} << 28U;
 
-/// The options of `kinalign benchmark run`. `programs` holds the values of --method; `methods` the
-/// words after the folder.
+/// The options of `kinalign benchmark run`. `programs` has the values of --method. `methods` has
+/// the words after the data set's folder.
 struct BenchmarkRun {
   std::vector<std::string> data, methods, programs;
   std::string split, device = "cpu", format = "text";
   std::string pose_model, head_model, fuse_model;
   std::int64_t seed = 1, steps = 0;
 
-  // The options that cleaning.h knows. Without METHOD the default methods of the help page run.
+  // The options for cleaning.h. If the user names no method, the default methods run.
   CleaningOptions cleaning(const Call& call) const {
     CleaningOptions out;
     out.data = folder_of(data);
@@ -89,15 +89,16 @@ Usage describe_benchmark_run(BenchmarkRun& o) {
   model("fuse-model", "model for figure 10: a Kinect and nodes (default: the shipped model)",
         o.fuse_model);
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
-    // The parse is for its error: a wrong NAME=PROGRAM is wrong use, before anything is trained.
+    // program_method() is called only for its errors: a wrong NAME=PROGRAM is wrong use, found
+    // before any training.
     for (const std::string& words : o.programs) KA_TRY(program_method(words));
     return check_out(common, {}, "-o FOLDER for results");
   };
   return usage;
 }
 
-/// Fails if the page's name belongs to a file that is no page of a benchmark.
-/// A run may replace its own page, so that repeating a command needs no --force.
+/// Fails if a file that is no page of a benchmark has the page's name. A page of an earlier run is
+/// replaced without --force.
 Result<void> check_page(const std::string& path, Call& call) {
   std::error_code fault;
   if (call.common.force || !std::filesystem::exists(path, fault)) return {};
@@ -108,15 +109,16 @@ Result<void> check_page(const std::string& path, Call& call) {
                        "another file"});
 }
 
-/// Prints the trainings of --dry-run with their times.
+/// Prints the trainings that a run would do, for --dry-run, with their times.
 Result<int> show_training_plan(const CleaningOptions& o, Call& call) {
   std::string text;
   Json json = Json::array();
   double seconds = 0.0;
   std::size_t trainings = 0, not_known = 0;
-  // The result is an upper bound, since the speeds were measured on a busy core.
+  // The sum is an upper bound, because the times were measured on a busy core.
   for (const TrainingPlan& one : training_plan(o)) {
-    // A model that is there takes no time, although it may turn out to be of another identity.
+    // An existing model takes no time. The run may still refuse it, if it was trained by another
+    // job.
     const std::optional<double> takes = one.is_there ? 0.0 : one.seconds;
     trainings += one.is_there ? 0 : 1;
     not_known += takes ? 0 : 1;
@@ -141,8 +143,8 @@ Result<int> show_training_plan(const CleaningOptions& o, Call& call) {
   return 0;
 }
 
-/// Writes table 9. Deviations are joined to their means, but in CSV they keep columns of their own.
-/// The three files have the same numbers: for a README, for a paper, and for computing.
+/// Writes table 9 as Markdown, LaTeX and CSV, all with the same numbers. Deviations stand in the
+/// cells of their means; in CSV they have their own columns.
 Result<void> write_tables(const Table& table, const std::string& folder, Call& call) {
   const std::string path = folder + "/table_9";
   KA_TRY(write_table(with_joined_deviations(table), path,
@@ -150,7 +152,7 @@ Result<void> write_tables(const Table& table, const std::string& folder, Call& c
   return write_table(table, path, {TableFormat::csv}, call);
 }
 
-/// The number of a row in the column of that key; absent if the cell has none. `key` must be a
+/// The number in the row's cell of a column. Empty if the cell has no number. `key` must be a
 /// column of the table.
 std::optional<double> value_of(const Table& table, const std::vector<Cell>& row,
                                const std::string& key) {
@@ -160,7 +162,7 @@ std::optional<double> value_of(const Table& table, const std::vector<Cell>& row,
   return value == nullptr ? std::nullopt : std::optional(*value);
 }
 
-/// The row with the smallest number in that column; nullptr if no row has a number there.
+/// The row with the smallest number in a column. nullptr if no row has a number there.
 const std::vector<Cell>* best_row(const Table& table, const std::string& key) {
   const std::vector<Cell>* best = nullptr;
   for (const auto& row : table.rows) {
@@ -170,7 +172,7 @@ const std::vector<Cell>* best_row(const Table& table, const std::string& key) {
   return best;
 }
 
-/// The page without its command and its figures.
+/// Makes the page without its command and its figures.
 ModelsPage page_of(const CleaningOptions& o, const CleaningData& data,
                    const std::vector<CleanedTakes>& all, const Table& table) {
   ModelsPage page;
@@ -185,8 +187,8 @@ ModelsPage page_of(const CleaningOptions& o, const CleaningData& data,
     page.facts.push_back(
         fmt::format("{} steps per network", grouped(static_cast<std::uint64_t>(o.steps))));
   }
-  // The headline is the best mean position. Next to it stand the first method's value (the raw
-  // Kinect by default) and the best bones.
+  // The page begins with the smallest mean error of position, the error of the first method (by
+  // default the raw Kinect), and the smallest error of the bones.
   if (const auto* best = best_row(table, "position_cm")) {
     const auto& name = std::get<std::string>(best->front());
     const double cm = *value_of(table, *best, "position_cm");
@@ -215,8 +217,8 @@ ModelsPage page_of(const CleaningOptions& o, const CleaningData& data,
   return page;
 }
 
-/// The word, quoted for a shell if needed.
-/// The page shows its own command. A name with spaces or quotes must survive a copy into a shell.
+/// Quotes a word for a shell if needed. The page shows its command, and users may copy it even if
+/// names contain spaces or quotes.
 std::string shell_word(const std::string& word) {
   const bool is_plain = std::all_of(word.begin(), word.end(), [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
@@ -224,15 +226,14 @@ std::string shell_word(const std::string& word) {
   });
   if (is_plain && !word.empty()) return word;
   std::string out = "'";
-  // Inside single quotes only the quote itself needs care: the text is ended, an escaped quote
-  // follows, and the text begins again.
+  // Within single quotes only a single quote needs an escape: the quoted text ends, an escaped
+  // quote follows, and a new quoted text begins.
   for (const char c : word) out += c == '\'' ? "'\\''" : std::string(1, c);
   return out + "'";
 }
 
-/// The command that makes the same page again.
-/// Defaults are left out, except the seed and the folder, without which the command would not give
-/// the same page.
+/// The command that makes the same page again. Defaults are left out, except for the seed and the
+/// folder.
 std::string command_of(const BenchmarkRun& o, const CleaningOptions& cleaning) {
   std::vector<std::string> words{cleaning.data};
   words.insert(words.end(), cleaning.methods.begin(), cleaning.methods.end());
@@ -253,13 +254,13 @@ std::string command_of(const BenchmarkRun& o, const CleaningOptions& cleaning) {
   return out;
 }
 
-/// A line for each row of the figures' tables: "figure 8   five nodes: all 8.7 cm".
+/// A line for each row in the tables of the figures: "figure 8   five nodes: all 8.7 cm".
 std::string figure_lines(const std::vector<PosePictures>& figures) {
   std::string out;
   for (const PosePictures& figure : figures) {
     std::string name = figure.id;
     std::replace(name.begin(), name.end(), '-', ' ');
-    // A figure without data prints its reason in place of numbers.
+    // A figure without data prints the reason in place of numbers.
     if (!figure.absent.empty()) out += fmt::format("{:<9}  {}\n", name, harmless(figure.absent));
     for (const Table& table : figure.tables) {
       for (const auto& row : table.rows) {
@@ -283,33 +284,35 @@ void print_results(const Table& table, const std::vector<PosePictures>& figures,
                    const std::string& format, const std::string& page_path, Call& call) {
   Json json{{"rows", rows_of_table(table)}, {"figures", Json::object()}, {"page", page_path}};
   for (const PosePictures& figure : figures) {
-    // A figure has several tables. Its rows are joined, since the page shows them as one result.
+    // The JSON has one list of rows for each figure, even if the figure has several tables.
     Json rows = Json::array();
     for (const Table& one : figure.tables) {
       for (Json& row : rows_of_table(one)) rows.push_back(std::move(row));
     }
     json["figures"][figure.id] = rows;
   }
-  // A name that is not UTF-8 must not end the program after hours of training.
+  // json_text() accepts names that are not UTF-8, which would otherwise end the program after hours
+  // of training.
   call.console.print_json(json_text(json, 1));
   if (call.common.json) return;
   print_tables({{"rows", with_joined_deviations(table)}}, format, call);
   call.console.print(figure_lines(figures) + harmless(fmt::format("page       {}\n", page_path)));
 }
 
-/// Runs all methods and writes tables and page. Table 9 is written before the figures are made.
+/// Runs all methods and writes the tables and the page. Table 9 is written before the figures are
+/// made.
 Result<int> run_benchmark(BenchmarkRun& o, Call& call) {
   const CleaningOptions cleaning = o.cleaning(call);
   const std::string page_path = cleaning.folder + "/benchmark.html";
-  // --dry-run comes first: it reads nothing but the names of models.
+  // --dry-run reads no data, only the names of the models.
   if (call.common.dry_run) return show_training_plan(cleaning, call);
-  // A page's name that is taken is an error before the training and not after it.
+  // A page's name that another file has is an error before the training, not after it.
   KA_TRY(check_page(page_path, call));
   call.console.advise("trained networks are kept");
   const CleaningData data = KA_TRY(open_cleaning(cleaning, call));
   const auto all = KA_TRY(run_methods(cleaning, data, call));
   const Table table = marks_table(data, all);
-  // If a model for the figures can't be read, table 9 of the long run is on the disk already.
+  // Table 9 is written first: it must not be lost if a model for the figures can't be read.
   KA_TRY(write_tables(table, cleaning.folder, call));
   ModelsPage page = page_of(cleaning, data, all, table);
   page.command = command_of(o, cleaning);

@@ -27,9 +27,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// The path of the plan, relative to the twin's folder.
-/// The plan's text is the identity of a twin: a folder is continued only if its plan is the same,
-/// byte for byte.
+/// The path of the plan, relative to the folder of the simulated data set (the twin). The plan
+/// identifies a twin: making is continued only in a folder whose plan has the same bytes.
 constexpr const char* plan_file = "truth/twin.json";
 constexpr std::size_t longest_plan = std::size_t{16} << 20;
 
@@ -57,14 +56,14 @@ Usage describe_twin(TwinVerb& o) {
   return usage;
 }
 
-/// The input for making all takes.
-/// `o` must outlive the job. Takes have the order of the plan, and their index is their number.
+/// Everything that is needed to make all takes. The number of a take is its index in `takes`. `o`
+/// must live longer than the job.
 struct TwinJob {
   const TwinVerb& o;
   std::string folder;
   std::vector<TwinTake> takes;
   std::vector<std::string> motions;  // paths of BVH files
-  std::string plan;                  // the content of the plan's file
+  std::string plan;                  // the text of the plan
 };
 
 /// The BVH files of a folder, sorted by name. Fails if there is none.
@@ -73,15 +72,14 @@ Result<std::vector<std::string>> motions_in(const std::string& folder) {
   if (folder.empty()) return out;
   const std::string below = folder + "/";
   for (const std::string& name : KA_TRY(names_in_folder(folder))) {
-    // Names come sorted, so the take that gets a motion does not depend on the file system.
+    // Names are sorted, so the motion of a take does not depend on the file system.
     if (name.ends_with(".bvh") || name.ends_with(".BVH")) out.push_back(below + name);
   }
   if (!out.empty()) return out;
   return Failure(Error{folder, 0, "a folder with BVH files", "no BVH file"});
 }
 
-/// The nearest parent folder of a path that exists.
-/// The disk of a folder that does not exist yet is that of its nearest existing parent.
+/// The nearest existing folder on a path. A new folder will be on the same disk.
 fs::path folder_that_is_there(fs::path path) {
   std::error_code fault;
   path = fs::absolute(path, fault);
@@ -89,25 +87,25 @@ fs::path folder_that_is_there(fs::path path) {
   return path;
 }
 
-/// The free bytes on the disk of a folder that may not exist yet; 0 if they are not known.
+/// The free bytes on the disk of a folder that may not exist yet. 0 if they are not known.
 std::uint64_t free_bytes(const std::string& folder) {
   std::error_code fault;
   const auto space = fs::space(folder_that_is_there(folder), fault);
   return fault ? 0 : space.available;
 }
 
-/// Fails if the folder holds anything but the same twin, or if the disk is too small.
+/// Fails if the folder contains anything but the same twin, or if the disk has too little room.
 Result<void> check_folder(const TwinJob& job, Call& call) {
   std::error_code fault;
   const std::string path = job.folder + "/" + plan_file;
-  // A twin that is there already is continued. No space is checked then: only a part of it may be
+  // The same twin is continued. Its disk space is not checked, because only a part of it may be
   // missing.
   if (is_there(path)) {
     if (KA_TRY(read_whole(call.surroundings.files, path, longest_plan)) == job.plan) return {};
     return Failure(
         Error{path, 0, "a twin with the same scale, seed and motions", "a twin with other values"});
   }
-  // A job that was stopped before it wrote its plan has made only this folder.
+  // If an earlier run was stopped before it wrote its plan, there is only the empty folder truth/.
   const bool is_begun = fs::is_empty(job.folder + "/truth", fault) &&
                         std::distance(fs::directory_iterator(job.folder, fault), {}) == 1;
   if (is_there(job.folder) && !fs::is_empty(job.folder, fault) && !is_begun) {
@@ -115,28 +113,28 @@ Result<void> check_folder(const TwinJob& job, Call& call) {
         Error{job.folder, 0, "a new folder, or an unfinished twin", "a folder with other files"});
   }
   const std::uint64_t wanted = bytes_of(job.takes), there = free_bytes(job.folder);
-  // An unknown amount of free space must not stop the job.
+  // If the free space is not known, the run goes on.
   if (there == 0 || wanted < there) return {};
   return Failure(Error{job.folder, 0, size_text(wanted) + " of free disk space", size_text(there)});
 }
 
-/// Makes the folders, the plan and dataset.toml. Existing files stay, since a stopped job
-/// continues.
+/// Makes the folders, the plan and dataset.toml. Existing files stay, so that a run that was
+/// stopped can continue.
 Result<void> begin_folder(const TwinJob& job, FileSystem& files) {
   KA_TRY(make_folders(job.folder + "/truth"));
-  // The plan is written first. check_folder() continues only a folder that has it.
+  // The plan is written first, because check_folder() continues only a folder with a plan.
   const std::string plan = job.folder + "/" + plan_file;
   if (!is_there(plan)) KA_TRY(write_whole(files, plan, job.plan, Overwrite::no));
   KA_TRY(make_folders(job.folder + "/splits"));
   const std::string catalogue = job.folder + "/" + std::string(catalogue_file);
   if (is_there(catalogue)) return {};
-  // The catalogue's name is that of the folder, also if the user typed "." or a path with "..".
+  // The data set is named after its folder, even if the user typed "." or "..".
   std::error_code fault;
   const std::string name = fs::weakly_canonical(job.folder, fault).filename().string();
   return write_whole(files, catalogue, KA_TRY(twin_catalogue(name)), Overwrite::no);
 }
 
-/// The takes made from a plan, and those that failed.
+/// The takes that were made from a plan, and those that failed.
 struct TwinMade {
   TwinCounts counts;
   std::uint64_t made = 0, were_there = 0, bytes = 0;
@@ -148,18 +146,17 @@ struct TwinMade {
   }
 };
 
-/// Makes the missing takes, several at once. A take that fails does not stop others.
-/// Threads take the missing takes one by one. `output` guards the progress, the counts and the
-/// list of failures.
+/// Makes the missing takes in several threads. If a take fails, the others are still made. The lock
+/// `output` protects the progress, the counts and the list of failures.
 Result<TwinMade> make_takes(const TwinJob& job, const Catalogue& catalogue, Call& call) {
   TwinMaker maker({call.surroundings.files, job.folder, catalogue, job.motions});
   const Progress progress = call.console.progress();
   TwinMade out;
-  std::vector<std::size_t> missing;  // indices of takes in the plan
+  std::vector<std::size_t> missing;  // their indices in the plan
   std::uint64_t all = 0, done = 0;   // frames
   for (std::size_t number = 0; number < job.takes.size(); ++number) {
     const TwinTake& take = job.takes[number];
-    // A take that exists counts without being made again, so a stopped job continues.
+    // An existing take is not made again, so that a run that was stopped can continue.
     if (const auto known = maker.known(take)) {
       ++out.were_there;
       out.add(take, *known);
@@ -168,13 +165,13 @@ Result<TwinMade> make_takes(const TwinJob& job, const Catalogue& catalogue, Call
       all += take.frames;
     }
   }
-  // The progress function is not made for several threads, so only one may call it at a time.
+  // Only one thread at a time may call the progress function.
   std::mutex output;
   bool stopped = false;
   const auto is_wanted = [&](std::uint64_t frames) {
     const std::lock_guard lock(output);
     done += frames;
-    // Once it is false, it stays false: all threads end as soon as they ask again.
+    // Once `stopped` is true, it stays true, and all threads end at their next call.
     stopped = stopped || !go_on(progress, "making takes", done, all);
     return !stopped;
   };
@@ -183,10 +180,10 @@ Result<TwinMade> make_takes(const TwinJob& job, const Catalogue& catalogue, Call
     const TwinTake& take = job.takes[missing[i]];
     const auto summary =
         maker.make(take, missing[i],
-                   // The progress inside a take only asks whether to go on. Frames are counted
-                   // once, when the take is done.
+                   // Within a take this function only asks whether to go on. The frames are counted
+                   // when the take is finished.
                    [&](std::string_view, std::uint64_t, std::uint64_t) { return is_wanted(0); });
-    // Ctrl-C makes the take fail as well. Such a failure is not one of the take.
+    // After Ctrl-C the take fails, too; that is no fault of the take.
     if (!is_wanted(take.frames) && !summary) return;
     const std::lock_guard lock(output);
     if (summary) {
@@ -197,29 +194,30 @@ Result<TwinMade> make_takes(const TwinJob& job, const Catalogue& catalogue, Call
     }
   });
   std::error_code ignored;
-  // The devices' files of takes that failed or were stopped go with the folder of the cache.
+  // The devices' files of takes that failed or were stopped lie in this folder and are removed with
+  // it.
   fs::remove_all(job.folder + "/" + std::string(cache_folder) + "/twin", ignored);
   if (stopped) return Failure(interruption());
   return out;
 }
 
-/// Writes the splits of a twin. Existing ones stay.
+/// Writes the splits of a twin. Existing files stay.
 Result<std::vector<std::string>> write_splits(const TwinJob& job, const DatasetIndex& index,
                                               Call& call) {
   FileSystem& files = call.surroundings.files;
   const auto takes = KA_TRY(built_takes(files, job.folder, index, ""));
   std::vector<std::string> out;
   for (const auto& [file, by] :
-       // The first word is the file's name, the second the rule by which make_split() divides the
-       // takes.
+       // The first word is the name of the file. The second word is the rule by which make_split()
+       // divides the takes.
        {std::pair("people", "subject"), std::pair("denoise", "hfut-denoise"),
         std::pair("imu", "hfut-imu")}) {
     const std::string name = std::string("splits/") + file + ".json",
                       path = job.folder + "/" + name;
-    // A split that can't be made is skipped: the data set is complete without it.
+    // A split that can't be made is left out; the data set is complete without it.
     const auto split = make_split(takes, index.catalogue(), {.by = by, .seed = job.o.seed});
     if (!split) continue;  // a small twin may have too few takes
-    // An existing split is kept, because models may have been trained with it.
+    // Models may have been trained with an existing split, so it is kept.
     if (!is_there(path)) {
       KA_TRY(write_whole(files, path, split_json(*split, takes), Overwrite::no));
     }
@@ -232,8 +230,8 @@ double hours_of(std::uint64_t frames) {
   return static_cast<double>(frames) / twin_rate_hz / 3600.0;
 }
 
-/// The takes by devices: "mocap + Kinect 13 takes, mocap + IMU 1 take, all three 10 takes".
-/// Shows which devices recorded together, since a method needs certain pairs.
+/// The number of takes by devices: "mocap + Kinect 13 takes, mocap + IMU 1 take, all three 10
+/// takes". A method needs takes with certain devices.
 std::string pairs_text(const TwinCounts& counts) {
   std::vector<std::string> words;
   for (std::size_t i = 0; i < device_choices.size(); ++i) {
@@ -252,14 +250,15 @@ Json json_of(const TwinCounts& counts) {
           {"takes_by_devices", takes}};
 }
 
-/// An empty table with the columns of the paper, of the plan and of the takes made.
+/// An empty table with columns for three counts: of the HFUT-MMD paper, of the plan, and of the
+/// takes made.
 Table table_with(const std::string& key, const std::string& caption) {
   Table table;
   table.caption = caption;
   table.has_sum = true;
   table.columns = {{key, key}};
   for (const std::string whose : {"paper", "asked", "made"}) {
-    // The keys name the origin for programs. Only the first title of three names it for people.
+    // For people only the first of three titles names the origin; for programs each key names it.
     table.columns.push_back({whose + "_mocap", whose + ": mocap"});
     table.columns.push_back({whose + "_kinect", "Kinect"});
     table.columns.push_back({whose + "_imu", "IMU"});
@@ -277,19 +276,18 @@ void add_row(const std::string& name, const std::vector<ModalityFrames>& values,
   table.rows.push_back(std::move(row));
 }
 
-/// The people of one row of the paper's table 6, as that table writes them.
+/// The ids of the people in one row of the paper's table 6, as that table writes them.
 std::string ids_of(const PaperPeople& people) {
   return fmt::format(
       "{}", fmt::join(people.ids.begin(),
                       people.ids.begin() + static_cast<std::ptrdiff_t>(people.count()), ", "));
 }
 
-/// Frames by people (the paper's table 6), by classes (table 7) and by devices. Each table compares
-/// the paper, the scale's plan and the takes made.
-/// The plan can't meet the paper's counts exactly at a small scale, so all three are shown next to
-/// each other.
+/// The numbers of frames by people (table 6 of the HFUT-MMD paper), by classes (table 7) and by
+/// devices. Each table compares the paper, the plan and the takes made, because a small plan can't
+/// meet the paper's numbers exactly.
 std::vector<Table> twin_tables(double scale, const TwinCounts& made) {
-  // A scale of 1 gives the paper's own counts.
+  // With a scale of 1 paper_counts() returns the numbers of the paper.
   const TwinCounts paper = paper_counts(1.0), asked = paper_counts(scale);
   Table people = table_with("people", "Frames by people (the paper's table 6)");
   for (std::size_t i = 0; i < paper_people.size(); ++i) {
@@ -306,7 +304,7 @@ std::vector<Table> twin_tables(double scale, const TwinCounts& made) {
             choices);
   }
   std::vector<Table> out{std::move(people), std::move(classes), std::move(choices)};
-  // All three tables end with the same sums.
+  // The last row of each table is the sum, which is the same in all three.
   for (Table& table : out) add_row("sum", {paper.sum(), asked.sum(), made.sum()}, table);
   return out;
 }
@@ -317,8 +315,8 @@ std::string tables_text(const std::vector<Table>& tables) {
   return text;
 }
 
-/// Prints the plan of --dry-run with the room that it needs.
-/// Uses the same counting as the finished twin, with the plan's frames in place of the takes'.
+/// Prints the plan of --dry-run with the disk space that it needs. The frames of the plan are
+/// counted like those of finished takes.
 Result<int> show_twin_plan(const TwinJob& job, Call& call) {
   TwinCounts counts;
   for (const TwinTake& take : job.takes) count(take, take.frames, counts);
@@ -345,7 +343,7 @@ void print_made(const TwinJob& job, const TwinMade& made, const std::vector<std:
   call.console.print(tables_text(twin_tables(job.o.scale, made.counts)));
   call.console.print(harmless(fmt::format(
       "{}: {}, {:.2f} h, {}{}\n  people  {}, {}\n  pairs   {}\n  splits  {}\n"
-      // The last line is a command that works on the new data set as it stands.
+      // The last line is a command that works on the new data set.
       "  next    kinalign eval raw offset ridge --data {} -o results --folds people\n",
       job.folder, counted(made.made + made.were_there, "take"), hours_of(made.counts.sum().mocap),
       size_text(made.bytes),
@@ -353,7 +351,7 @@ void print_made(const TwinJob& job, const TwinMade& made, const std::vector<std:
       counted(people.size(), "person", "people"), counted(actions.size(), "action"),
       pairs_text(made.counts), splits.empty() ? "none" : fmt::format("{}", fmt::join(splits, ", ")),
       job.folder)));
-  // A failed take is listed with its reason; running the command again tries it again.
+  // Each failed take is listed with the reason. The same command tries these takes again.
   for (const auto& [name, error] : made.failed) {
     call.console.print(
         harmless(fmt::format("failed  {}: {}\n", to_string(name), to_string(error))));
@@ -368,7 +366,7 @@ void print_made(const TwinJob& job, const TwinMade& made, const std::vector<std:
   call.console.print_json(json_text(json, 1));
 }
 
-/// The plan is made from the options alone; motion files enter it by name only.
+/// The plan depends on the options and on the names of the motion files, not on their content.
 Result<TwinJob> job_of(const TwinVerb& o, const Call& call) {
   auto motions = KA_TRY(motions_in(o.motion));
   TwinJob job{o, folder_of({call.common.out}), plan_twin(o.options()), std::move(motions), ""};
@@ -378,7 +376,7 @@ Result<TwinJob> job_of(const TwinVerb& o, const Call& call) {
   return job;
 }
 
-/// Makes a twin. The folder is begun only after all checks.
+/// Makes a twin. All checks come before the folder is made.
 Result<int> run_twin(TwinVerb& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   call.console.advise("nothing was written");
@@ -387,12 +385,12 @@ Result<int> run_twin(TwinVerb& o, Call& call) {
   if (call.common.dry_run) return show_twin_plan(job, call);
   call.console.detail(fmt::format("{} to make: about {}", counted(job.takes.size(), "take"),
                                   size_text(bytes_of(job.takes))));
-  // From here on files exist, so the advice changes from "nothing was written".
+  // Files exist from here on, so the advice "nothing was written" would be wrong.
   call.console.advise("run the same command again to continue");
   KA_TRY(begin_folder(job, files));
   const std::string path = job.folder + "/" + std::string(catalogue_file);
   const Catalogue catalogue =
-      // The catalogue is read from the disk, since begin_folder() keeps an existing one.
+      // dataset.toml is read from the disk, because begin_folder() keeps an existing one.
       KA_TRY(read_catalogue(KA_TRY(read_whole(files, path, longest_manifest)), path));
   const TwinMade made = KA_TRY(make_takes(job, catalogue, call));
   const DatasetIndex index = KA_TRY(open_index(job.folder, call));
