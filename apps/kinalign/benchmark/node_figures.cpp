@@ -206,7 +206,7 @@ struct AnsweredTakes {
   std::vector<ComparedMotion> motions;
   bool are_tested = true;  // true: the takes are of test people
   std::size_t failed = 0;
-  std::string fault;  // first take that failed
+  std::string fault;  // the reason of the first take that failed
 
   /// A note for the page. Empty if no take failed.
   std::string note() const {

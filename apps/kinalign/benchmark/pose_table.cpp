@@ -179,7 +179,7 @@ std::vector<ChosenFrame> choose_frames(const CleaningData& data, const ActingJoi
       if (!motion.is_whole(t)) continue;
       for (std::size_t s = 0; s < searches.size(); ++s) {
         const double score = searches[s].score(motion, joints, t);
-        // Of frames with the same score the first is taken, so that the choice is always the same.
+        // If frames have the same score, the first is taken, so that the choice is always the same.
         if (score > out[s].score) out[s] = {p, t, score};
       }
     }
