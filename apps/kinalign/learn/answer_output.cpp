@@ -24,7 +24,8 @@ namespace kinalign {
 
 namespace {
 
-/// A broken model gives NaN. A BVH with "nan" could not be read by any other program.
+/// False if the clip contains NaN or infinity, as the answer of a broken model does. No program can
+/// read a BVH with "nan".
 bool is_finite(const Clip& clip) {
   const auto is_number = [](double value) { return std::isfinite(value); };
   const ClipFrames& frames = clip.frames;
@@ -32,20 +33,20 @@ bool is_finite(const Clip& clip) {
          std::all_of(frames.local_rotations.begin(), frames.local_rotations.end(), is_number);
 }
 
-/// The statures that --body accepts, m.
+/// The body heights (statures) that --body accepts, m.
 constexpr double least_stature_m = 0.5, most_stature_m = 2.6;
-// A BVH larger than this is refused.
+// A larger BVH is refused.
 constexpr std::uint64_t most_body_bytes = std::uint64_t{1} << 28U;
 
-/// The stature that the text states, m. Absent if the text is not one number.
+/// Parses a stature, m. Empty if the text is not a number.
 std::optional<double> stature_in(const std::string& words) {
   double out = 0.0;
-  // The whole text must be a number: "1.75m" may be the name of a file.
+  // The whole text must be a number, because "1.75m" may be the name of a file.
   return parse_number(words, out) ? std::optional(out) : std::nullopt;
 }
 
-/// Each warning has a line of its own, after the summary. Names in warnings come from files, so
-/// they are made harmless.
+/// Adds one line for each warning below the summary. harmless() removes control characters, since
+/// names in warnings come from files.
 std::string with_warnings(std::string text, const AboutAnswer& about) {
   for (const AboutAnswer& warning : about.at("warnings")) {
     text += fmt::format("warning  {}\n", harmless(warning.get<std::string>()));
@@ -71,7 +72,7 @@ Field body_flag(std::string& words, const std::string& otherwise) {
 }
 
 Result<void> check_body(const std::string& words) {
-  // A file's name is accepted as it is; it is opened when the model is known.
+  // The name of a BVH is accepted here. The file is opened later, when the model is known.
   if (words.empty() || words.ends_with(".bvh")) return {};
   const auto stature = stature_in(words);
   if (stature && *stature >= least_stature_m && *stature <= most_stature_m) return {};
@@ -79,15 +80,15 @@ Result<void> check_body(const std::string& words) {
       Error{"--body", 0, "a stature from 0.5 to 2.6 m, or a BVH of the suit", shown(words)});
 }
 
-/// The bones of --body: the model's body scaled to a stature, or with the bone lengths of a BVH
-/// file.
+/// The bones that --body asks for: the model's body scaled to a stature, or with the bone lengths
+/// of a BVH file.
 Result<std::optional<Skeleton>> body_of_words(const std::string& words, const Skeleton& body,
                                               Call& call) {
   if (words.empty()) return std::optional<Skeleton>{};
-  // All bones are scaled by one factor, so the model's proportions stay.
+  // All bones are scaled by the same factor, so the proportions of the model's body stay.
   if (const auto stature = stature_in(words)) return scaled(body, *stature / stature_of(body));
   const std::string text = KA_TRY(read_whole(call.surroundings.files, words, most_body_bytes));
-  // Only lengths are taken from the BVH.
+  // Only the lengths of the bones are taken from the BVH.
   return std::optional(KA_TRY(with_lengths_of(body, KA_TRY(read_bvh(text, words, {})).clip.skeleton)
                                   .map_error(in_file(words))));
 }
@@ -104,8 +105,8 @@ std::string body_line(const AboutAnswer& about) {
 
 Result<AboutAnswer> answered(const std::string& in,
                              const std::function<Result<AboutAnswer>()>& work, Call& call) {
-  // HDF5 is read in a child. All other formats have readers of kinalign, which are safe in this
-  // process.
+  // A damaged take can crash HDF5, so a child process reads takes. kinalign's own readers of all
+  // other formats are safe in this process.
   if (KA_TRY(kind_of_file(call.surroundings.files, in)) != FileKind::take) {
     return work().map_error(in_file(in));
   }
@@ -113,15 +114,15 @@ Result<AboutAnswer> answered(const std::string& in,
     return KA_TRY(work().map_error(in_file(in))).dump();
   };
   AboutAnswer about =
-      // A child process that read a damaged take may send anything. Text that is no object is an
-      // error.
+      // A child process that has read a damaged take may return anything. Text that is no JSON
+      // object is an error.
       AboutAnswer::parse(KA_TRY(run_guarded(GuardLimits{}, blame(in), as_text)), nullptr, false);
   if (about.is_object()) return about;
   return Failure(Error{in, 0, "a take that can be read", "an unreadable answer"});
 }
 
 Result<void> write_answer(Clip clip, double rate_hz, const std::string& model, Call& call) {
-  // The check is made before the file is created, so an existing file stays.
+  // The check comes before the file is created, so that an existing file stays.
   if (!is_finite(clip)) {
     return Failure(Error{model, 0, "a model with finite answers", "NaN or infinite values"});
   }
@@ -135,7 +136,7 @@ Result<void> write_answer(Clip clip, double rate_hz, const std::string& model, C
 Result<void> keep_free(const Call& call) {
   const Common& common = call.common;
   if (common.out.empty()) return {};
-  // The file is created and destroyed without a commit, which leaves no trace but tests name and
+  // The file is created but not committed, so it disappears again. This tests the name and the
   // permissions.
   (void)KA_TRY(OutputFile::create(call.surroundings.files, common.out, common.overwrite()));
   return {};
@@ -165,7 +166,7 @@ Result<int> end_live(Clip clip, const std::string& model, const std::string& tex
     KA_TRY(write_answer(std::move(clip), about.at("rate_hz").get<double>(), model, call));
     call.console.wrote(call.common.out);
   }
-  // "event" comes first, as in all other lines of a live run.
+  // "event" is the first member, as in all other lines of a live run.
   AboutAnswer event{{"event", "ended"}};
   event.update(about);
   call.console.print(with_warnings(text + live_lines(about), about));

@@ -33,9 +33,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double longest_gap_s = 0.2;  // samples further apart are not interpolated
+constexpr double longest_gap_s = 0.2;  // samples that are further apart are not interpolated
 
-/// The options of `kinalign denoise`. `in` is empty in a live run.
+/// The options of `kinalign denoise`. A live run has an empty `in`.
 struct Denoise {
   std::vector<std::string> in;
   std::string model, stream;
@@ -43,8 +43,7 @@ struct Denoise {
   LiveWords live;
 };
 
-/// The command line of `kinalign denoise`. A live run may end without a file; a run on a file may
-/// not.
+/// The command line of `kinalign denoise`. -o may be missing in a live run only.
 Usage describe_denoise(Denoise& o) {
   Usage usage;
   usage.positionals = {{"IN", "a take, a recording, a manifest or a Kinect's file", &o.in, 0}};
@@ -58,30 +57,29 @@ Usage describe_denoise(Denoise& o) {
   for (Field& field : live_flags(o.live)) usage.flags.push_back(std::move(field));
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
     KA_TRY(check(o.live, o.in));
-    // Projection optimises the whole motion at once, which a live run does not have.
+    // Projection needs the whole motion at once, which a live run does not have.
     if (!o.live.live.empty() && o.project) {
       return Failure(
           Error{"--project", 0, "a file or a take, because it needs the whole motion", "--live"});
     }
     if (o.live.live.empty()) return check_out(common, {".bvh", ".trc"}, "-o FILE.bvh or FILE.trc");
-    // A live run sends its frames as it goes, so a file is optional. TRC is not offered there.
+    // A live run can send its frames, so it needs no file. It can't write TRC.
     if (common.out.empty()) return {};
     return check_out(common, {".bvh"}, "-o FILE.bvh, with --live");
   };
   return usage;
 }
 
-/// The denoised joints with their input, and the JSON about them.
-/// Input [T,Jin] and answer [T,Jout] have the same T frames on the model's grid.
+/// The cleaned joints, their input, and the JSON about both. Input and answer have the same frames,
+/// at the model's frame rate.
 struct Cleaned {
   EvenFrames input;
   Denoised answer;
   Json about;
 };
 
-/// The mean distance, m, by which the model moved joints that the Kinect tracked. An output joint
-/// is compared with the input joint of the same name. This measure of the model's work needs no
-/// truth.
+/// The mean distance, m, between the model's joints and the tracked joints of the Kinect with the
+/// same names. It shows how much the model changes, and needs no truth.
 Mean moves_m(const DenoiseModel& model, const Cleaned& cleaned) {
   Mean out;
   const std::size_t in = model.layout.inputs.size(), joints = model.layout.outputs.size();
@@ -89,7 +87,8 @@ Mean moves_m(const DenoiseModel& model, const Cleaned& cleaned) {
   for (std::size_t t = 0; t < cleaned.input.body.frames(); ++t) {
     for (std::size_t j = 0; j < joints; ++j) {
       const auto from = index_of(model.layout.inputs, names[j]);
-      // 2 is the state "tracked". A joint that the Kinect only guessed is expected to be moved far.
+      // The state 2 means "tracked". Joints that the Kinect only guessed may move far, so they are
+      // left out.
       if (!from || cleaned.input.body.seen[t * in + *from] != 2) continue;
       const float* a = &cleaned.input.body.positions[(t * in + *from) * 3];
       const float* b = &cleaned.answer.positions[(t * joints + j) * 3];
@@ -99,15 +98,15 @@ Mean moves_m(const DenoiseModel& model, const Cleaned& cleaned) {
   return out;
 }
 
-/// The mean of the stated standard deviations, m, of output joints whose input joint was seen.
-/// Others are left out: a network does not know how far off a guess is.
+/// The mean of the standard deviations, m, that the model states for its joints. Joints whose input
+/// joint was missing are left out, because the network can't know the error of a guess.
 Mean spread_m(const DenoiseModel& model, const Cleaned& cleaned) {
   Mean out;
   const std::size_t in = model.layout.inputs.size(), joints = model.layout.outputs.size();
   const auto stands = inputs_of_outputs(model.layout);
   for (std::size_t i = 0; i < cleaned.answer.spread.size(); ++i) {
-    // Entry i is joint i % joints of frame i / joints. `stands` gives the input joint that stands
-    // for it.
+    // The element i belongs to joint i % joints in frame i / joints. `stands` has the input joint
+    // that corresponds to each output joint.
     const std::size_t seen = i / joints * in + stands[i % joints];
     if (cleaned.input.body.seen[seen] != 0) {
       out.add(static_cast<double>(cleaned.answer.spread[i]));
@@ -116,16 +115,16 @@ Mean spread_m(const DenoiseModel& model, const Cleaned& cleaned) {
   return out;
 }
 
-/// The input joints that were missing for `longest_unseen_s` or longer, each with its longest time,
-/// s.
+/// The input joints that were missing for `longest_unseen_s` or longer, each with the longest such
+/// time, s.
 Json long_missing(const DenoiseModel& model, const EvenFrames& input) {
-  // An object keeps the names of joints as its keys, in the order of the layout.
+  // The keys of the object are the names of the joints, in the model's order.
   Json out = Json::object();
   const std::size_t joints = model.layout.inputs.size();
   for (std::size_t j = 0; j < joints; ++j) {
     std::size_t run = 0, longest = 0;
     for (std::size_t t = 0; t < input.body.frames(); ++t) {
-      // A frame with the joint ends the stretch; the longest one is kept.
+      // `run` counts the frames since the joint was last seen.
       run = input.body.seen[t * joints + j] == 0 ? run + 1 : 0;
       longest = std::max(longest, run);
     }
@@ -135,8 +134,8 @@ Json long_missing(const DenoiseModel& model, const EvenFrames& input) {
   return out;
 }
 
-/// The JSON about an answer. `warnings`: those about the input.
-/// Shares are fractions from 0 to 1 over all input cells [T,Jin]; distances are in centimetres.
+/// The JSON about an answer. `warnings`: the warnings about the input. Shares are fractions from 0
+/// to 1 of all input joints in all frames. Distances are in centimetres.
 Json about(const DenoiseModel& model, const Cleaned& cleaned, const std::string& stream,
            std::vector<std::string> warnings) {
   const auto& seen = cleaned.input.body.seen;
@@ -154,23 +153,23 @@ Json about(const DenoiseModel& model, const Cleaned& cleaned, const std::string&
   }
   out["warnings"] = std::move(warnings);
   const auto spread = spread_m(model, cleaned).value();
-  // radius_90 turns a standard deviation per axis into the radius that contains 90 % of the errors.
+  // The factor radius_90 turns the standard deviation of one axis into the radius that contains 90
+  // % of the errors.
   if (spread) out["radius_90_cm"] = 100.0 * radius_90 * *spread;
   return out;
 }
 
-/// The joints that a model gets as input.
+/// The joints that the model gets as input, with the name of their stream.
 struct SeenJoints {
   std::string stream;
   EvenFrames frames;
   std::vector<std::string> warnings{};
 };
 
-/// Reads the joints and brings them to the model's grid.
+/// Reads the joints of a file and resamples them to the model's frame rate.
 Result<SeenJoints> seen_joints(const DenoiseLayout& layout, const Denoise& o, Call& call) {
   const NamedPoints named = KA_TRY(points_of(o.in.front(), {o.stream}, call));
-  // The joints are renamed to the Kinect's names first, since layouts of files name them
-  // differently.
+  // File formats name the joints differently, so they first get the names of a Kinect.
   EvenFrames frames = KA_TRY(even_frames(layout.inputs, kinect_names(named.joints), named.frames,
                                          {layout.rate_hz, longest_gap_s})
                                  .map_error(in_file(o.in.front())));
@@ -178,8 +177,8 @@ Result<SeenJoints> seen_joints(const DenoiseLayout& layout, const Denoise& o, Ca
   return SeenJoints{named.stream, std::move(frames), std::move(warnings)};
 }
 
-/// Does the same for a take, which is read in a child process.
-/// The child sends positions and states as a SafeTensors file, which is far more compact than JSON.
+/// Does the same with a take, which a child process reads. The child returns positions and states
+/// as SafeTensors, which is much smaller than JSON.
 Result<SeenJoints> seen_joints_of_take(const DenoiseLayout& layout, const Denoise& o, Call& call) {
   const std::string& in = o.in.front();
   const auto work = [&]() -> Result<std::string> {
@@ -196,7 +195,7 @@ Result<SeenJoints> seen_joints_of_take(const DenoiseLayout& layout, const Denois
   TensorFile sent =
       KA_TRY(read_safetensors(KA_TRY(run_guarded(GuardLimits{}, blame(in), work)), in));
   SeenJoints out;
-  try {  // a child process that read a damaged file is not trusted
+  try {  // the child read a file that may be damaged, so its text may be wrong
     const Json about = Json::parse(sent.metadata["about"]);
     about.at("stream").get_to(out.stream);
     out.frames.start = utc_time(about.at("start_ns").get<std::int64_t>());
@@ -205,7 +204,7 @@ Result<SeenJoints> seen_joints_of_take(const DenoiseLayout& layout, const Denois
     return Failure(Error{in, 0, "a take that can be read", "an unreadable answer"});
   }
   out.frames.rate_hz = layout.rate_hz;
-  // The layout is known here, so the child does not repeat it.
+  // The model's layout gives the number of joints, so the child does not return it.
   out.frames.body.joints = layout.inputs.size();
   out.frames.body.positions = std::move(sent.tensors["positions"].values);
   const auto& seen = sent.tensors["seen"].values;
@@ -213,33 +212,34 @@ Result<SeenJoints> seen_joints_of_take(const DenoiseLayout& layout, const Denois
   return out;
 }
 
-/// The model's answer, projected onto constraints, then steadied like every answer. `path`: the
+/// The model's answer, projected onto constraints and then steadied like every answer (Steadier).
+/// kinalign-learn computes the projection, because it needs gradients of the network. `path`: the
 /// model's file.
-/// The projection is computed by kinalign-learn, because it needs gradients of the network.
 Result<Denoised> clean_with_constraints(const DenoiseModel& model, const std::string& path,
                                         const JointFrames& body, Json& about, Call& call) {
   const auto projected = KA_TRY(projected_answers(path, model.layout, {body}, call));
   about["projected"] = {{"feet_cm", {projected.before.feet_cm, projected.after.feet_cm}},
                         {"bone_cm", {projected.before.bone_cm, projected.after.bone_cm}}};
-  // Projected answers exist for the body and its mirror image, which are all that the steadier asks
-  // for.
+  // The steadier asks for the answers to the body and to its mirror image. Both have been
+  // projected.
   const Steadier steadier(model.steadying, model.layout);
   return steadier.steadied(projected.answer, body, projected.answer(body));
 }
 
-/// Writes the joints as points. Frame t is stamped t / rate after the first frame.
+/// Writes the joints as points in the format TRC. The stamp of frame t is t / rate after the first
+/// frame.
 Result<void> write_trc(FileSystem& files, const DenoiseModel& model, const Cleaned& cleaned,
                        const Common& common) {
   TextOut out = KA_TRY(TextOut::create(files, common.out, common.overwrite()));
   const std::size_t joints = model.layout.outputs.size(), frames = cleaned.input.body.frames();
   PointFrames points;
   for (std::size_t t = 0; t < frames; ++t) {
-    // Each stamp is computed from the first one, so rounding does not add up.
+    // Each stamp is computed from the first one, so that rounding errors do not add up.
     const double ns = static_cast<double>(t) * 1e9 / cleaned.input.rate_hz;
     points.stamps.push_back(cleaned.input.start + Duration(std::llround(ns)));
   }
   points.positions.assign(cleaned.answer.positions.begin(), cleaned.answer.positions.end());
-  // The model answers every joint in every frame, so all of them count as tracked.
+  // The model gives a position for every joint, so all joints have the state "tracked".
   points.state.assign(frames * joints, Tracking::tracked);
   TrcWriter writer =
       KA_TRY(TrcWriter::begin({model.layout.outputs, cleaned.input.rate_hz, frames,
@@ -250,7 +250,7 @@ Result<void> write_trc(FileSystem& files, const DenoiseModel& model, const Clean
   return out.commit();
 }
 
-/// Writes the joints as points (TRC) or as a BVH, which has rotations and bones of constant length.
+/// Writes the joints as points (TRC), or as a BVH with rotations and bones of constant length.
 Result<void> write_cleaned(const DenoiseModel& model, const Cleaned& cleaned, const Denoise& o,
                            Call& call) {
   if (call.common.out.ends_with(".trc")) {
@@ -262,15 +262,15 @@ Result<void> write_cleaned(const DenoiseModel& model, const Cleaned& cleaned, co
   return write_answer(std::move(clip), layout.rate_hz, o.model, call);
 }
 
-/// The printed summary: frames, joints, missing input, stated spread and, with --project,
-/// constraints before and after.
+/// The printed summary: frames, joints, missing input and the stated deviation. With --project also
+/// the errors of the constraints before and after.
 std::string cleaned_text(const Json& about, const std::string& out) {
   std::string text =
       answer_line(about, out) +
       fmt::format("cleaned  joints moved by {:.1f} cm on average, bones of one length each\n",
                   about.at("moved_cm").get<double>()) +
       "seen     " + seen_text(about) + "\n";
-  // The member is missing if the model states no spread.
+  // A model that states no deviation has no such member.
   if (about.contains("radius_90_cm")) {
     text += fmt::format(
         "sure     9 of 10 visible joints lie within {:.1f} cm, if the data is like the training "
@@ -278,7 +278,7 @@ std::string cleaned_text(const Json& about, const std::string& out) {
         about.at("radius_90_cm").get<double>());
   }
   if (about.contains("projected")) {
-    // Index 0 is the value before the projection, 1 the value after it.
+    // [0] is the error before the projection, [1] the error after it.
     const auto value_of = [&](const char* what, std::size_t i) {
       return about.at("projected").at(what).at(i).get<double>();
     };
@@ -291,11 +291,11 @@ std::string cleaned_text(const Json& about, const std::string& out) {
   return text;
 }
 
-/// Denoises the samples that a running record receives. Writes a file if -o names one.
-/// The clip grows during the run and is written at its end, also after Ctrl-C.
+/// Cleans the data that a running `record` receives. If -o names a file, the clip is written there
+/// at the end, after Ctrl-C, too.
 Result<int> clean_live(Denoiser& denoiser, const Denoise& o, Call& call) {
   const LiveJob job{o.live, "", o.stream, {}};
-  // The output is tested before the run starts.
+  // A file that can't be written is an error before the run, not after it.
   KA_TRY(keep_free(call));
   Clip clip;
   const Json about = KA_TRY(run_live_denoise(denoiser, job, clip, call));
@@ -304,13 +304,13 @@ Result<int> clean_live(Denoiser& denoiser, const Denoise& o, Call& call) {
   return end_live(std::move(clip), o.model, text, about, call);
 }
 
-/// Denoises one file and writes the result. The exit code is 1 if there were warnings.
+/// Cleans one file and writes the result. The exit code is 1 if there are warnings.
 Result<int> run_denoise(Denoise& o, Call& call) {
   FileSystem& files = call.surroundings.files;
-  // The shipped model is the default, so the verb works without any flag.
+  // Without --model the model "denoise" is used, which comes with kinalign.
   o.model = KA_TRY(model_named(o.model, "denoise"));
   const std::string bytes = KA_TRY(read_whole(files, o.model, most_model_bytes));
-  // make() checks the whole model, so a wrong file fails before any input is read.
+  // make() checks the whole model, so a wrong model fails before any input is read.
   Denoiser denoiser = KA_TRY(Denoiser::make(KA_TRY(read_denoise_model(bytes, o.model))));
   if (!o.live.live.empty()) return clean_live(denoiser, o, call);
   KA_TRY(keep_inputs(call.common.out, o.in));
@@ -319,7 +319,7 @@ Result<int> run_denoise(Denoise& o, Call& call) {
   SeenJoints seen = KA_TRY(is_take ? seen_joints_of_take(model.layout, o, call)
                                    : seen_joints(model.layout, o, call));
   Cleaned cleaned{std::move(seen.frames), {}, Json::object()};
-  // The members about the projection are kept apart, since about() makes a new object.
+  // about() makes a new object below, so the members about the projection are kept until then.
   Json of_projection = Json::object();
   cleaned.answer =
       o.project

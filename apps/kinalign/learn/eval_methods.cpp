@@ -19,20 +19,20 @@ namespace {
 
 constexpr std::string_view projects = "+project";
 
-/// An answer without a model: the base joints of the filtered input.
-/// The returned function refers to `layout`, which must outlive it.
+/// Makes a method without a model: it filters the input and answers with the input joint that
+/// corresponds to each output joint. `layout` must live longer than the returned function.
 Answer filtered(const DenoiseLayout& layout, const std::function<void(JointFrames&)>& filter) {
   return [&layout, filter](const JointFrames& body) {
     JointFrames copy = body;
-    // A filter needs a value in every frame, so missing joints are filled first.
+    // A filter needs a position in every frame, so missing joints are filled first.
     fill_missing(copy, false);
     filter(copy);
     return Denoised{base_joints(layout, std::move(copy)), {}};
   };
 }
 
-/// The pairs of the takes that the method learns from.
-/// Takes are chosen by name: a take may have several pairs, and all of them are on the same side.
+/// The pairs from which the method learns. They are chosen by take: a take may have several pairs,
+/// which are all used or all left out.
 std::vector<const Pair*> learnt_of(const EvalTask& task) {
   std::vector<const Pair*> out;
   for (const Pair& pair : task.pairs) {
@@ -42,9 +42,8 @@ std::vector<const Pair*> learnt_of(const EvalTask& task) {
   return out;
 }
 
-/// The inputs of the takes that the method does not learn from; projection computes their answers
-/// ahead.
-/// A tested take is any other than the learnt ones, also those that only stop the training.
+/// The inputs of all other takes. The projection computes the answers to them in advance. They
+/// include the takes that are only used to stop a training in time.
 std::vector<JointFrames> tested_of(const EvalTask& task) {
   std::vector<JointFrames> out;
   for (const Pair& pair : task.pairs) {
@@ -58,9 +57,9 @@ std::vector<JointFrames> tested_of(const EvalTask& task) {
 
 }  // namespace
 
-/// Methods without training first, then the trained ones; those with a hidden space also with
-/// projection.
-/// The names are written on the command line and in tables, so they must not change.
+/// All methods: first those without training, then trained ones. A trained method with a hidden
+/// space also has a variant with projection. The names appear in commands and tables, so they must
+/// not change.
 const std::vector<EvalMethod>& eval_methods() {
   static const std::vector<EvalMethod> all = [] {
     std::vector<EvalMethod> out{{"raw", "the Kinect as it is"},
@@ -89,12 +88,13 @@ std::string trained_part(const std::string& method) {
   return method.ends_with(projects) ? method.substr(0, method.size() - projects.size()) : method;
 }
 
-// The layout decides which joints are compared. It is the same for every method of a run.
+// The layout decides which joints are compared. All methods of a run have the same layout.
 Result<DenoiseLayout> eval_layout(const Pairs& pairs) {
   DenoiseLayout out =
       KA_TRY(denoise_layout(pairs.inputs, pairs.outputs, pairs.rate_hz, pairs.parents));
-  // For the steadying, bones join only joints that a Kinect has: no filter answers the suit's
-  // joints in between. If the Kinect has none of the joints, the suit's own bones count.
+  // Steadying gives bones a constant length. Its bones connect only joints that a Kinect has,
+  // because filters do not answer the suit's joints in between. If no joint has a Kinect's name,
+  // the suit's own bones are used.
   auto bones = kinect_parents_of(kinect_names(out.outputs));
   const bool known = std::any_of(bones.begin(), bones.end(), [](int one) { return one >= 0; });
   if (known) out.parents = std::move(bones);
@@ -104,8 +104,7 @@ Result<DenoiseLayout> eval_layout(const Pairs& pairs) {
 Result<Answer> trained_answer(const std::string& method, const std::string& file,
                               const DenoiseLayout& layout, const std::vector<JointFrames>& bodies,
                               Call& call) {
-  // Projected answers are computed for all bodies in one run, since starting kinalign-learn takes a
-  // second.
+  // All bodies are projected in one run of kinalign-learn, because starting it takes a second.
   if (method.ends_with(projects)) {
     return KA_TRY(projected_answers(file, layout, bodies, call)).answer;
   }
@@ -114,7 +113,7 @@ Result<Answer> trained_answer(const std::string& method, const std::string& file
 
 std::array<DenoiseMarks, 2> both_marks(const DenoiseMarker& marker, const Steadier& steadier,
                                        const Answer& answer, const Pair& pair, Denoised plain) {
-  // The plain answer is marked before it is moved into the steadier.
+  // The marks are computed before the plain answer is moved.
   const DenoiseMarks marks = marker.marks_of(pair, plain.positions, plain.spread);
   const Denoised steadied = steadier.steadied(answer, pair.input, std::move(plain));
   return {marks, marker.marks_of(pair, steadied.positions, steadied.spread)};
@@ -122,19 +121,20 @@ std::array<DenoiseMarks, 2> both_marks(const DenoiseMarker& marker, const Steadi
 
 Result<Answer> answer_of_model(const std::string& bytes, const std::string& name) {
   auto denoiser =
-      // A Denoiser can't be copied into a function, so the function shares it. It must be used by
-      // one thread at a time.
+      // The function shares the Denoiser, which can't be copied. Only one thread at a time may call
+      // the function.
       std::make_shared<Denoiser>(KA_TRY(Denoiser::make(KA_TRY(read_denoise_model(bytes, name)))));
   return Answer([denoiser](const JointFrames& body) { return denoiser->answer(body); });
 }
 
-// Each branch returns a function of one body. The fitted ones share their coefficients.
+// Each branch returns a function that answers for one body. Fitted methods keep their coefficients
+// in it.
 Result<Answer> make_answer(const EvalTask& task, Call& call) {
   const std::string& method = task.training.method;
   const DenoiseLayout& layout = task.layout;
   const double rate = layout.rate_hz;
   const std::map<std::string, std::function<void(JointFrames&)>> filters{
-      // The baseline: its errors are those of the Kinect itself.
+      // The method "raw" changes nothing, so its errors are those of the Kinect.
       {"raw", [](JointFrames&) {}},
       {"hold", [rate](JointFrames& body) { hold(body, rate); }},
       {"savgol",
@@ -145,12 +145,13 @@ Result<Answer> make_answer(const EvalTask& task, Call& call) {
     return filtered(layout, filter->second);
   }
   if (method == "offset" || method == "offset+kalman") {
-    // Offset and ridge learn from the same takes as the networks, so the comparison is fair.
+    // "offset" and "ridge" learn from the same takes as the networks, so that the comparison is
+    // fair.
     const auto fit = std::make_shared<MeanOffset>(layout, learnt_of(task));
     const bool smoothed = method != "offset";
     return Answer([fit, smoothed, &layout, rate](const JointFrames& body) {
       JointFrames copy = body;
-      // The filter comes before the offset, as the method's name says.
+      // In "offset+kalman" the filter comes first, then the offset.
       if (smoothed) kalman_smooth({}, copy, rate);
       return Denoised{fit->clean(layout, copy), {}};
     });
@@ -161,7 +162,7 @@ Result<Answer> make_answer(const EvalTask& task, Call& call) {
       return Denoised{fit->clean(layout, body), {}};
     });
   }
-  // Every other name is that of a trained method; the parser has refused unknown ones.
+  // All other names belong to trained methods, because the parser has refused unknown names.
   TrainingWanted wanted = task.training;
   wanted.method = trained_part(method);
   const std::string model = KA_TRY(trained_model(wanted, call));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The methods that clean a Kinect: filters, those fitted in closed form, and trained networks.
+// The methods that clean the joints of a Kinect: filters, methods fitted by a formula, and trained
+// networks.
 #pragma once
 
 #include "apps/cli/verb.h"
@@ -18,42 +19,41 @@ namespace kinalign {
 struct EvalMethod {
   std::string name, summary;
 };
-/// The order is that of tables and help pages. The list is made once and lives as long as the
-/// program.
+/// All methods, in the order of tables and help pages. The list lives as long as the program.
 const std::vector<EvalMethod>& eval_methods();
 
-/// True for methods that kinalign-learn trains.
+/// True if kinalign-learn trains the method.
 bool is_trained(const std::string& method);
-/// The name of the method that is trained: "cnn" for "cnn+project", else the method itself.
+/// The method whose training is used: "cnn" for "cnn+project", else the method itself.
 std::string trained_part(const std::string& method);
 
-/// The input and output joints of methods on these pairs. Fails like denoise_layout().
+/// The input and output joints of all methods for these pairs. Fails like denoise_layout().
 Result<DenoiseLayout> eval_layout(const Pairs& pairs);
 
-/// The data and the training that a method is made from.
+/// The data and the settings from which a method is made.
 struct EvalTask {
   const DenoiseLayout& layout;
   const std::vector<Pair>& pairs;
-  TrainingWanted training;  // every method learns from its takes, trained or not
+  TrainingWanted training;  // all methods learn from its takes, trained or not
 };
 
-/// Fits or trains the method of `task.training`. `task.layout` and `task.pairs` must live longer.
-/// A method in closed form is fitted in this call. A network is trained, unless its model file
-/// exists, which may take hours.
+/// Makes the function that answers for the method `task.training`. Methods with a formula are
+/// fitted in this call. A network is trained unless its model's file exists, which may take hours.
+/// `task.layout` and `task.pairs` must live longer than the function.
 Result<Answer> make_answer(const EvalTask& task, Call& call);
 
-/// The answer of a method whose trained part is the model in `file`. `bodies`: the inputs that it
-/// will be asked for; projection computes all of them ahead.
+/// The function of a method that uses the trained model in `file`. `bodies`: the inputs for which
+/// it will be called, because the projection computes all answers in advance.
 Result<Answer> trained_answer(const std::string& method, const std::string& file,
                               const DenoiseLayout& layout, const std::vector<JointFrames>& bodies,
                               Call& call);
 
-/// The marks of the plain answer to a pair, and of the steadied one. `answer`: asked again for the
-/// mirror image.
+/// The marks of the plain answer to a pair, and of the steadied answer. `answer` is called again
+/// with the mirrored input.
 std::array<DenoiseMarks, 2> both_marks(const DenoiseMarker& marker, const Steadier& steadier,
                                        const Answer& answer, const Pair& pair, Denoised plain);
 
-/// The answer of a model's file, without the steadying.
+/// The function of a model's file, which gives plain answers.
 Result<Answer> answer_of_model(const std::string& bytes, const std::string& name);
 
 }  // namespace kinalign

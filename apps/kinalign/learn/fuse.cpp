@@ -22,9 +22,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double most_unsure_deg = 10.0;  // a node's heading, 1 sigma; more gives a warning
-constexpr double most_turned_deg = 40.0;  // a heading correction by the Kinect; more means a node
-                                          // worn elsewhere
+// standard deviation of a node's heading; above it there is a warning
+constexpr double most_unsure_deg = 10.0;
+// correction of a heading by the Kinect; a larger one means that the node is worn elsewhere
+constexpr double most_turned_deg = 40.0;
 
 /// The options of `kinalign fuse`. `kinect` and `nodes` are names of streams.
 struct FuseWords {
@@ -34,7 +35,7 @@ struct FuseWords {
   LiveWords live;
 };
 
-/// The command line of `kinalign fuse`. A live run may end without a file.
+/// The command line of `kinalign fuse`. -o may be missing in a live run only.
 Usage describe_fuse(FuseWords& o) {
   Usage usage;
   usage.positionals = {
@@ -51,7 +52,7 @@ Usage describe_fuse(FuseWords& o) {
     KA_TRY(check(o.worn));
     KA_TRY(check_body(o.body));
     KA_TRY(check(o.live, o.in));
-    // A live run waits for the T-pose for a limited time only, so --tpose is checked against it.
+    // A live run keeps frames for a limited time only, so live_options() checks --tpose against it.
     if (!o.live.live.empty()) KA_TRY(live_options(o.worn));
     if (!o.live.live.empty() && common.out.empty()) return {};
     return check_out(common, {".bvh"}, "-o FILE.bvh");
@@ -59,16 +60,17 @@ Usage describe_fuse(FuseWords& o) {
   return usage;
 }
 
-/// Adds each node's heading correction at the end of the run, and warnings where the Kinect
-/// corrects it by much or can't find it.
+/// Adds the correction of each node's heading at the end of the run. Adds warnings if a correction
+/// is large or uncertain.
 void add_heading_warnings(const std::vector<std::string>& names,
                           const std::vector<HeadingState>& states, Json& about) {
-  // `states` is [T,N], frame after frame; the last row has the corrections after the whole run.
+  // `states` has one element for each frame and node. The last frame has the corrections after the
+  // whole run.
   about["found_headings"] = headings_json(names, std::span(states).last(names.size()));
   for (const auto& [name, found] : about["found_headings"].items()) {
     const auto spread = found.at("spread_deg").get<double>();
     const auto turned = found.at("turned_deg").get<double>();
-    // A node without samples has a heading without meaning and already has its own warning.
+    // A node without samples has no real heading, and it has its own warning.
     const bool is_there = about.at("nodes").at(name).at("valid").get<double>() > 0.0;
     if (is_there && std::abs(turned) > most_turned_deg && spread <= most_unsure_deg) {
       about["warnings"].push_back(
@@ -76,25 +78,25 @@ void add_heading_warnings(const std::vector<std::string>& names,
                       "with another node, or worn in another orientation?",
                       name, turned));
     }
-    // An uncertain heading is only reported. The node stays in use.
+    // A node with an uncertain heading gets a warning but is still used.
     if (!is_there || spread <= most_unsure_deg) continue;
     about["warnings"].push_back(
         fmt::format("{}: its heading is uncertain by the Kinect (± {:.0f} deg)", name, spread));
   }
 }
 
-/// Fuses both devices and writes the answer. The bones have the lengths of --body, else those that
-/// the Kinect saw, else the model's.
+/// Fuses both devices and writes the answer. --body gives the lengths of the bones. Without it they
+/// are those that the Kinect measured, or the model's.
 Result<Json> fuse_into(Fuser& fuser, BothDevices both, const FuseWords& o, Call& call) {
   const FusedInput given = KA_TRY(fused_input(fuser.model(), std::move(both), o.worn));
   const PoseLayout& layout = fuser.model().layout.nodes;
-  // The flag has priority over the Kinect's measurement, and this over the model's mean.
+  // --body overrides the lengths that the Kinect measured, and these override the model's lengths.
   const auto own = KA_TRY(body_of_words(o.body, fuser.model().body.skeleton, call));
   fuser.use_body(own ? *own : given.body);
   Json about = about_fused(fuser.model(), given);
   const std::string by = given.is_sized ? "the Kinect" : "the model";
   about["body"] = about_body(fuser.model().body.skeleton, own ? "--body" : by);
-  // The headings are computed once and used twice: for the warnings and for the clip.
+  // The headings are computed once, for the warnings and for the clip.
   const auto headings = fuser.headings(given.input);
   add_heading_warnings(layout.nodes, headings, about);
   KA_TRY(
@@ -102,7 +104,7 @@ Result<Json> fuse_into(Fuser& fuser, BothDevices both, const FuseWords& o, Call&
   return about;
 }
 
-/// The printed summary. Each node's heading correction stands with 1 sigma, both in degrees.
+/// The printed summary. The correction of each heading has its standard deviation, both in degrees.
 std::string fuse_text(const Json& about, const std::string& out) {
   std::string found;
   for (const auto& [name, one] : about.at("found_headings").items()) {
@@ -113,13 +115,13 @@ std::string fuse_text(const Json& about, const std::string& out) {
          node_lines(about) + fmt::format("turned   by the Kinect, deg: {}\n", found);
 }
 
-/// Fuses the samples that a running record receives. Writes a file if -o names one.
+/// Fuses the data that a running `record` receives. If -o names a file, the clip is written there.
 Result<int> fuse_live(Fuser& fuser, const FuseWords& o, Call& call) {
   LiveJob job{o.live, o.nodes, o.kinect, {}};
   job.worn = KA_TRY(live_options(o.worn));
   KA_TRY(keep_free(call));
   Clip clip;
-  // A live run uses the model's body unless --body gives another.
+  // A live run uses the model's body, unless --body gives another one.
   if (const auto own = KA_TRY(body_of_words(o.body, fuser.model().body.skeleton, call))) {
     fuser.use_body(*own);
   }
@@ -128,7 +130,7 @@ Result<int> fuse_live(Fuser& fuser, const FuseWords& o, Call& call) {
   return end_live(std::move(clip), o.model, fuse_text(about, call.common.out), about, call);
 }
 
-/// Fuses one file and writes the result. The exit code is 1 if there were warnings.
+/// Fuses one file and writes the result. The exit code is 1 if there are warnings.
 Result<int> run_fuse(FuseWords& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   o.model = KA_TRY(model_named(o.model, "fuse"));
@@ -139,7 +141,7 @@ Result<int> run_fuse(FuseWords& o, Call& call) {
   KA_TRY(keep_inputs(call.common.out, o.in));
   const auto work = [&]() -> Result<Json> {
     BothDevices both;
-    // If both readers fail, the error of the nodes is reported.
+    // The nodes are read first, so if both fail the error is about the nodes.
     both.nodes = KA_TRY(nodes_of(in, {o.nodes, "--nodes"}, call));
     both.kinect = KA_TRY(points_of(in, {o.kinect, "--kinect"}, call));
     return fuse_into(fuser, std::move(both), o, call);

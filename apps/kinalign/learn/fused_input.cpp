@@ -15,11 +15,10 @@ namespace kinalign {
 
 namespace {
 
-constexpr double longest_kinect_gap_s = 0.2;  // samples further apart are not interpolated
+constexpr double longest_kinect_gap_s = 0.2;  // samples that are further apart are not interpolated
 
-/// The grid from the first stamp of either device to the last one.
-/// A stretch with only one of both devices belongs to the grid, too: the model answers it from that
-/// device alone.
+/// The time from the first stamp of either device to the last one. It includes stretches with only
+/// one of the devices, in which the model uses that device alone.
 EvenSpan span_of_both(const BothDevices& both, const NodeChoice& choice, double rate_hz) {
   Time first = both.kinect.frames.stamps.front(), last = both.kinect.frames.stamps.back();
   for (const auto& node : choice) {
@@ -36,7 +35,8 @@ EvenSpan span_of_both(const BothDevices& both, const NodeChoice& choice, double 
 Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const WornWords& worn) {
   const FuseLayout& layout = model.layout;
   FusedInput out;
-  // The choice is made before the nodes are moved from: the grid needs the stamps of their tracks.
+  // span_of_both() needs the stamps of the nodes' tracks, so the nodes are chosen before the tracks
+  // are moved.
   const NodeChoice choice = KA_TRY(choose(layout.nodes, both.nodes));
   if (both.kinect.frames.stamps.size() < 2) {
     return Failure(Error{"", 0, "a Kinect with at least two frames", "fewer frames"});
@@ -44,7 +44,7 @@ Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const W
   const EvenSpan span = span_of_both(both, choice, layout.nodes.rate_hz);
   out.start = span.start;
   out.kinect = both.kinect.stream;
-  // Only the names are kept. The tracks are large and move into the calibration.
+  // Only the names are kept; the tracks are large and are moved into the calibration.
   out.nodes = {both.nodes.stream, both.nodes.names, {}, {}};
   out.posed = KA_TRY(
       calibrated_nodes(layout.nodes, model.body.skeleton, std::move(both.nodes), worn, span));
@@ -54,8 +54,8 @@ Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const W
                          {layout.nodes.rate_hz, longest_kinect_gap_s, span}));
   out.warnings = warnings_of(both.kinect, seen);
   out.input.kinect = std::move(seen.body);
-  // The world of the nodes has another heading than the Kinect's. The seconds in which both see the
-  // person show the angle between them.
+  // The coordinates of the nodes have another heading than those of the Kinect. The difference is
+  // computed from the time in which both devices see the person.
   const auto yaw = shared_heading(layout, out.input);
   if (!yaw) {
     return Failure(Error{"", 0,
@@ -63,8 +63,8 @@ Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const W
                          "no such second (denoise and pose use one device alone)"});
   }
   turn_world(out.input.nodes, *yaw);
-  // All bones that are seen well give the length of the person's legs (kinect_size.h). Its ratio to
-  // the model's legs scales the whole body.
+  // The length of the person's legs is estimated from all bones that the Kinect sees well
+  // (kinect_size.h). The ratio to the model's legs scales the whole body.
   const double mean = leg_length(model.body.skeleton);
   const auto legs = legs_by_kinect(layout.joints, out.input.kinect);
   out.is_sized = legs.has_value() && mean > 0.0;
@@ -83,8 +83,8 @@ nlohmann::ordered_json about_fused(const FuseModel& model, const FusedInput& giv
                              {"method", model.facts.method},
                              {"missing", share_of(seen, 0)},
                              {"inferred", share_of(seen, 1)}};
-  // The members of the nodes come after those of both devices; "warnings" is among them and must
-  // exist before the next line.
+  // about_nodes() adds the members of the nodes. They include "warnings", which the next line
+  // extends.
   out.update(about_nodes(layout, given.posed, given.input.nodes, given.nodes));
   for (const std::string& warning : given.warnings) out["warnings"].push_back(warning);
   return out;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The input of a model that fuses a Kinect and nodes of one recording: both on one grid, nodes on
-// their bones, one heading.
+// Prepares a Kinect and nodes of one recording for a model that fuses them: common frames, nodes
+// calibrated on their bones, and the same heading.
 #pragma once
 
 #include "apps/kinalign/learn/point_source.h"
@@ -15,32 +15,31 @@
 
 namespace kinalign {
 
-/// Both devices as their files state them.
+/// A Kinect and nodes, as they were read from files.
 struct BothDevices {
   NamedPoints kinect;
   NamedNodes nodes;
 };
 
-/// The input of a network, and its sources.
-/// Both devices have the same grid of T frames. Orientations of nodes and positions of the Kinect
-/// are in one world with one heading.
+/// The input of a model for fusion, and where it comes from. Both devices have the same frames, and
+/// coordinates with the same heading.
 struct FusedInput {
   FuseInput input;
   Time start{};
-  std::string kinect;  // the name of its stream
-  NamedNodes nodes;    // names only, no tracks
+  std::string kinect;  // the name of the Kinect's stream
+  NamedNodes nodes;    // names only; the tracks are empty
   PosedNodes posed;
-  Skeleton body;         // the model's, as long as the Kinect sees the person
-  bool is_sized = true;  // false: the Kinect saw too little of the legs, so `body` has the model's
-                         // size
+  Skeleton body;  // the model's body, scaled to the legs that the Kinect sees
+  // false: the Kinect saw too little of the legs, so `body` has the model's size
+  bool is_sized = true;
   std::vector<std::string> warnings{};  // about the Kinect's stream
 };
 
-/// Fails if the Kinect has fewer than two frames, if nodes do not fit, or if both devices never see
-/// the person together for a second. Errors may have no file's name.
+/// Fails if the Kinect has fewer than two frames, if the model's nodes are missing, or if both
+/// devices never see the person for the same second. Some errors name no file.
 Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const WornWords& worn);
 
-/// The JSON about the input: the members of about_nodes() and those of both streams.
+/// The JSON about the input: the members of about_nodes(), and members about both streams.
 nlohmann::ordered_json about_fused(const FuseModel& model, const FusedInput& given);
 
 }  // namespace kinalign

@@ -39,21 +39,20 @@ Usage describe_export(Export& o) {
   return usage;
 }
 
-/// A network with the tensors of its layers.
+/// A network and the tensors of its layers.
 struct Parts {
   Architecture architecture;
   std::map<std::string, Tensor> tensors;
 };
 
-/// A linear map of each channel: y = factor x + offset.
-/// Standardising the input and scaling the answer are such maps. They become layers, so the ONNX
-/// file is complete.
+/// A linear map of each channel: y = factor x + offset. Such maps standardise a network's input and
+/// scale its answer. They are exported as layers, so that the ONNX file is complete.
 struct Scaling {
   std::vector<float> factor, offset;
 };
 
-/// Adds the scaling as a linear layer: a diagonal weight matrix and a bias.
-/// n is the number of channels; the weights are [n,n].
+/// Adds the tensors of a linear layer for the map: a diagonal matrix of weights [channels,
+/// channels] and the offsets.
 void put_scaling(const Scaling& scaling, const std::string& path,
                  std::map<std::string, Tensor>& out) {
   const std::size_t n = scaling.factor.size();
@@ -63,24 +62,24 @@ void put_scaling(const Scaling& scaling, const std::string& path,
   out[path + ".bias"] = {{n}, scaling.offset};
 }
 
-/// The network with the scalings of its input and its output as linear layers.
+/// Adds the maps of input and output to a network, as its first and last layer.
 Parts scaled(const Parts& network, const Scaling& before, const Scaling& after) {
   Parts out{network.architecture, {}};
   auto& layers = out.architecture.layers;
-  // The numbers of layers in tensor names shift by one, since a layer is put in front.
+  // A new first layer is added, so the number of each layer in the tensors' names grows by one.
   layers.insert(layers.begin(), {.kind = LayerKind::linear, .out = before.factor.size()});
   layers.push_back({.kind = LayerKind::linear, .out = after.factor.size()});
-  for (const auto& [name, tensor] : network.tensors) {  // "3.1.0.weight" is now "4.1.0.weight"
+  for (const auto& [name, tensor] : network.tensors) {  // "3.1.0.weight" becomes "4.1.0.weight"
     const std::size_t dot = name.find('.');
     out.tensors[std::to_string(std::stoul(name.substr(0, dot)) + 1) + name.substr(dot)] = tensor;
   }
-  // Layer 0 is the new first one, and the last index is the new last one.
+  // Layer 0 is the new first layer. The last index is the new last layer.
   put_scaling(before, "0", out.tensors);
   put_scaling(after, std::to_string(layers.size() - 1), out.tensors);
   return out;
 }
 
-/// A network with only those tensors that its layers use: a file may hold others.
+/// A network with only the tensors of its layers. A file may contain more tensors.
 Parts parts_of(const Architecture& architecture, const std::map<std::string, Tensor>& tensors,
                const std::string& name) {
   Parts out{architecture, {}};
@@ -90,8 +89,7 @@ Parts parts_of(const Architecture& architecture, const std::map<std::string, Ten
   return out;
 }
 
-/// The scaling from raw channels to mean 0 and deviation 1.
-/// (x - mean) / scale, written as factor and offset.
+/// The map that gives channels mean 0 and deviation 1: (x - mean) / scale as factor and offset.
 Scaling standardising(const std::vector<float>& mean, const std::vector<float>& scale) {
   Scaling out;
   for (std::size_t c = 0; c < mean.size(); ++c) {
@@ -101,50 +99,50 @@ Scaling standardising(const std::vector<float>& mean, const std::vector<float>& 
   return out;
 }
 
-/// The network with its own scaling of the input, and this one of the output.
+/// A model's network, with its own map of the input and the given map of the output.
 Parts scaled_network(const auto& model, const Scaling& after) {
   return scaled(parts_of(model.architecture, model.tensors, "net"),
                 standardising(model.input_mean, model.input_scale), after);
 }
 
-/// The network from raw features to corrections in metres and logarithms of centimetres.
-/// The last channels, the logarithms of the spread, are not scaled.
+/// The network of a model that cleans a Kinect. Its answers are corrections in metres and, in the
+/// last channels, logarithms of deviations in centimetres. The logarithms are not scaled.
 Parts whole_network(const DenoiseModel& model) {
   Scaling after;
   after.factor.assign(model.layout.answers(), static_cast<float>(model.answer_scale));
   after.offset = model.answer_mean;
   if (model.states_spread) {
-    // One channel for each output joint follows the three coordinates of all of them.
+    // After the three coordinates of all output joints follows one channel for each joint.
     after.factor.resize(after.factor.size() + model.layout.outputs.size(), 1.0F);
     after.offset.resize(after.factor.size(), 0.0F);
   }
   return scaled_network(model, after);
 }
 
-/// The scaling that adds the identity's six numbers to each bone's rotation: networks answer the
-/// difference from it.
-/// The six numbers are the first two columns of the rotation matrix.
+/// The map that adds the identity to the rotation of each bone, because networks answer the
+/// difference from it. A rotation has six numbers: the first two columns of its matrix.
 Scaling onto_identity(std::size_t bones) {
   Scaling out;
   out.factor.assign(6 * bones, 1.0F);
   for (std::size_t b = 0; b < bones; ++b) {
-    // An answer of zeros therefore stands for the identity.
+    // An answer of zeros therefore means the identity.
     out.offset.insert(out.offset.end(), six_of_identity.begin(), six_of_identity.end());
   }
   return out;
 }
 
-/// The metadata of the ONNX file: it says in words what each channel means. `second`: the network
-/// behind the first.
+/// The metadata of the ONNX file: what each channel means, in words. `second`: for the second
+/// network, which uses the first one's answer.
 std::map<std::string, std::string> metadata_of(const DenoiseModel& model, bool second) {
   const DenoiseLayout& layout = model.layout;
   Json bases = Json::array();
   for (const int base : layout.bases) {
-    // A joint without a base has null.
+    // An output joint without a corresponding input joint has null.
     bases.push_back(base < 0 ? Json() : Json(layout.inputs[static_cast<std::size_t>(base)]));
   }
   std::string output = "positions of the output joints in the body's frame, m";
-  // The second network continues the answer of the first one; it has positions on both sides.
+  // The input and the output of the second network are positions: it improves the answer of the
+  // first one.
   if (!second) {
     output = "what is added to the smoothed base joint of each output joint, m";
     if (model.states_spread) output += "; then ln of each joint's standard deviation per axis, cm";
@@ -163,7 +161,7 @@ std::map<std::string, std::string> metadata_of(const DenoiseModel& model, bool s
           {"kinalign.training", model.facts.training}};
 }
 
-/// The network to be exported, and its metadata.
+/// The network that is exported, and its metadata.
 struct Exported {
   Parts parts;
   std::map<std::string, std::string> metadata;
@@ -171,7 +169,7 @@ struct Exported {
 
 Result<Exported> exported_denoise(const std::string& bytes, const std::string& path, bool second) {
   const DenoiseModel model = KA_TRY(read_denoise_model(bytes, path));
-  // The model is built once to check it, and then dropped.
+  // The model is built once to check it. The result is not used.
   KA_TRY(Denoiser::make(model).map_error(in_file(path)));
   if (second && !model.second) {
     return Failure(Error{path, 0, "a second network", "none"});
@@ -180,8 +178,8 @@ Result<Exported> exported_denoise(const std::string& bytes, const std::string& p
   return Exported{std::move(parts), metadata_of(model, second)};
 }
 
-/// The metadata of models for poses and fusion.
-/// The description of the channels is too long for metadata, so it names the page.
+/// The metadata of models for poses and fusion. The description of the channels is long, so the
+/// metadata names the manual page.
 std::map<std::string, std::string> body_metadata(const ModelFacts& facts, const PoseLayout& layout,
                                                  const std::string& output) {
   return {{"kinalign.task", facts.task},
@@ -194,7 +192,7 @@ std::map<std::string, std::string> body_metadata(const ModelFacts& facts, const 
           {"kinalign.training", facts.training}};
 }
 
-/// The network of a pose model. Models that this program can't use are refused before anything is
+/// The network of a model for poses. A model that kinalign can't use is refused before any file is
 /// written.
 Result<Exported> exported_pose(const std::string& bytes, const std::string& path) {
   const PoseModel model = KA_TRY(read_pose_model(bytes, path));
@@ -205,14 +203,14 @@ Result<Exported> exported_pose(const std::string& bytes, const std::string& path
                                 "orthonormal")};
 }
 
-/// The network of a fusion model. Its last three answers are a place, in units of
+/// The network of a model for fusion. Its last three answers are the root's position, in units of
 /// fuse_place_unit_m.
 Result<Exported> exported_fuse(const std::string& bytes, const std::string& path) {
   const FuseModel model = KA_TRY(read_fuse_model(bytes, path));
   KA_TRY(Fuser::make(model).map_error(in_file(path)));
-  // The bones are followed by the root's rotation, hence + 1.
+  // The rotation of the root follows those of the bones, so there is one rotation more.
   Scaling after = onto_identity(model.layout.nodes.bones.size() + 1);
-  // resize() adds the three channels of the place with their own factor.
+  // resize() adds the three channels of the position, which have another factor.
   after.factor.resize(model.layout.answers(), fuse_place_unit_m);
   after.offset.resize(model.layout.answers(), 0.0F);
   Exported out{scaled_network(model, after),
@@ -224,7 +222,8 @@ Result<Exported> exported_fuse(const std::string& bytes, const std::string& path
   return out;
 }
 
-/// Chooses the export by the model's task. Only a denoising model can have a second network.
+/// Chooses the network by the model's task. Only a model that cleans a Kinect may have a second
+/// network.
 Result<Exported> exported(const std::string& bytes, const std::string& path,
                           const std::string& network) {
   const std::string task = KA_TRY(task_of_model(bytes, path));
@@ -236,7 +235,7 @@ Result<Exported> exported(const std::string& bytes, const std::string& path,
   return task == "fuse" ? exported_fuse(bytes, path) : exported_denoise(bytes, path, second);
 }
 
-/// Writes the ONNX file and prints its numbers of channels.
+/// Writes the ONNX file and prints the numbers of its channels.
 Result<int> run_export(Export& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string &in = o.model.front(), &out = call.common.out;
@@ -244,7 +243,7 @@ Result<int> run_export(Export& o, Call& call) {
   const std::string bytes = KA_TRY(read_whole(files, in, most_model_bytes));
   const Exported whole = KA_TRY(exported(bytes, in, o.network));
   const Parts& parts = whole.parts;
-  // No prefix: the tensors have the names of this file's layers already.
+  // The tensors have the names of this network's layers already, so no prefix is needed.
   const OnnxOptions options{.prefix = "", .metadata = whole.metadata};
   KA_TRY(write_whole(files, out, KA_TRY(onnx_of(parts.architecture, parts.tensors, options)),
                      call.common.overwrite()));

@@ -33,12 +33,13 @@ Result<std::size_t> choose_stream(const std::vector<StreamChoice>& all, const Wa
 Result<Input> open_motion(const std::string& path, Call& call) {
   FileSystem& files = call.surroundings.files;
   const Progress progress = call.console.progress();
-  // Only a recording needs more than open_input(): its manifest is made from its survey.
+  // open_input() opens everything but recordings; the manifest of a recording is made from its
+  // survey.
   if (KA_TRY(kind_of_file(files, path)) != FileKind::recording) {
     return open_input(files, path, StreamFlags{}, progress);
   }
   const auto source =
-      // Devices::learned also fits the devices' clocks, since the samples are read.
+      // The samples are read later, so the devices' clocks are computed, too (Devices::learned).
       KA_TRY(RecordingSource::open(files, path, RecordingSource::Devices::learned, {}, progress));
   Input out;
   out.manifest = KA_TRY(recorded_manifest(source->survey(), path));
@@ -52,7 +53,7 @@ Result<Input> open_motion(const std::string& path, Call& call) {
 std::vector<std::string> warnings_of(const RecordedStream& stream) {
   std::vector<std::string> out;
   for (const Finding& one : all_findings(stream)) {
-    // Notes are of no use in a summary of a few lines.
+    // Notes are left out, because the summary has only a few lines.
     if (one.severity < Severity::warning) continue;
     out.push_back(to_string(one.what) + ": " + one.meaning +
                   (one.repair.empty() ? "" : "; " + one.repair));

@@ -13,19 +13,20 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_samples = std::size_t{1} << 26U;  // all nodes together, for memory
+// of all nodes together; the limit protects the memory
+constexpr std::size_t most_samples = std::size_t{1} << 26U;
 constexpr std::string_view nodes_kind = "inertial nodes";
 
-/// n samples of S nodes. An empty array was not measured.
-/// The references lead into a block of a reader or a slab of a take. [n,S] is the shape of all
-/// arrays.
+/// References to a block of rows with S nodes, from a reader or a take. All arrays have the shape
+/// [row, S]. An empty array means that the quantity was not measured.
 struct NodeBlock {
   const std::vector<Time>& stamps;
   const std::vector<double>&orientation, &acceleration, &angular_velocity;
   const std::vector<std::uint8_t>& valid;
 };
 
-/// Appends row i of an array [n,width]; does nothing if the array was not measured.
+/// Appends one sample from an array with `width` numbers for each sample. Does nothing if the
+/// quantity was not measured.
 void append_numbers(const std::vector<double>& from, std::size_t i, std::size_t width,
                     std::vector<double>& to) {
   if (from.empty()) return;
@@ -33,19 +34,19 @@ void append_numbers(const std::vector<double>& from, std::size_t i, std::size_t 
   to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(width));
 }
 
-/// Appends a block to the tracks from `first` on. Invalid samples, and stamps that do not rise, are
-/// left out.
+/// Appends a block to the tracks from index `first` on. Invalid samples and samples whose stamps do
+/// not rise are left out.
 Result<void> append_block(const NodeBlock& block, std::size_t first, NamedNodes& out) {
   if (block.stamps.empty()) return {};
   const std::size_t nodes = block.valid.size() / block.stamps.size();
-  // i counts samples frame by frame: sample i belongs to node i % S and to stamp i / S.
+  // Sample i belongs to node i % S and to stamp i / S.
   for (std::size_t i = 0; i < block.valid.size(); ++i) {
     NodeTrack& track = out.tracks[first + i % nodes];
     const Time stamp = block.stamps[i / nodes];
-    // Stamps of each track must rise strictly, since resampling searches them. A repeated stamp is
-    // dropped.
+    // Resampling searches the stamps of a track, so they must rise. A sample with a repeated stamp
+    // is dropped.
     if (block.valid[i] == 0 || (!track.stamps.empty() && stamp <= track.stamps.back())) continue;
-    // The product overestimates the total, but needs no extra counter.
+    // The product may be larger than the true number of samples, but needs no extra counter.
     if (track.stamps.size() * out.tracks.size() > most_samples) {
       return Failure(Error{"", 0, "a stream that fits into memory", "a longer stream"});
     }
@@ -57,8 +58,8 @@ Result<void> append_block(const NodeBlock& block, std::size_t first, NamedNodes&
   return {};
 }
 
-/// Adds empty tracks for nodes. `worn`: the stated mounting (sensor_from_bone) of each node, absent
-/// if none is stated.
+/// Adds an empty track for each node. `worn`: the mounting of each node (sensor_from_bone), if the
+/// manifest states it.
 void add_tracks(const std::vector<std::string>& names, const ImuContent& content,
                 const std::vector<std::optional<Quat>>& worn, NamedNodes& out) {
   for (const std::string& name : names) {
@@ -66,27 +67,27 @@ void add_tracks(const std::vector<std::string>& names, const ImuContent& content
     out.tracks.emplace_back();
     out.tracks.back().gravity = content.gravity;
   }
-  // `worn` has one entry for each of `names`, so all arrays of `out` stay of one length.
+  // `worn` has one element for each name, so all arrays of `out` have the same length.
   out.worn.insert(out.worn.end(), worn.begin(), worn.end());
 }
 
-/// The stated mountings of nodes. `is_applied`: the take's rows are turned already, so the mounting
-/// is the identity.
+/// The mountings of nodes that a manifest states. `is_applied`: the rows of the take are already
+/// turned, so the mounting is the identity.
 std::vector<std::optional<Quat>> worn_by(const StreamOptions& options,
                                          const std::vector<std::string>& names, bool is_applied) {
   std::vector<std::optional<Quat>> out;
   for (const std::string& name : names) {
     out.emplace_back();
     const auto stated = options.mounting.find(name);
-    // Four numbers are a quaternion w,x,y,z. Any other length means that no mounting is stated.
+    // A mounting is a quaternion w, x, y, z. An array of another length means that none is stated.
     if (stated == options.mounting.end() || stated->second.size() != 4) continue;
-    // In a T-pose the bone's axes are the world's.
+    // In a T-pose the axes of the bone are those of the world.
     out.back() = is_applied ? Quat::Identity() : quat(stated->second, 0).normalized().conjugate();
   }
   return out;
 }
 
-/// The take's only group of nodes, or the one with the wanted name.
+/// The index of the take's group of nodes: the wanted one, or the only one.
 Result<std::size_t> node_group_of(const TakeHeader& header, const std::string& path,
                                   const WantedStream& wanted) {
   std::vector<StreamChoice> all;
@@ -97,7 +98,8 @@ Result<std::size_t> node_group_of(const TakeHeader& header, const std::string& p
   return choose_stream(all, wanted, nodes_kind, path);
 }
 
-/// The streams of nodes with the wanted name. If no name is given, all streams must have one name.
+/// The streams of nodes with the wanted name. If no name is given, all streams must have the same
+/// name.
 Result<std::vector<const RecordedStream*>> node_streams(const Recording& recording,
                                                         const std::string& path,
                                                         const WantedStream& wanted) {
@@ -119,14 +121,14 @@ Result<std::vector<const RecordedStream*>> node_streams(const Recording& recordi
   return out;
 }
 
-/// Reads all samples of a stream, with stamps on the take's clock.
+/// Reads all samples of a stream. Their stamps are in the time of the take.
 Result<void> read_nodes(const RecordedStream& stream, const ImuInput& input, std::size_t first,
                         NamedNodes& out) {
   const auto pass = KA_TRY(input.passes());
   ImuSamples block;
   while (KA_TRY(pass(block))) {
-    // Every stream has its own clock, so only the take's clock makes stamps of several devices
-    // comparable.
+    // Each stream has its own clock. Only in the time of the take can stamps of several devices be
+    // compared.
     for (Time& stamp : block.stamps) stamp = take_time(stream.clock, stamp);
     KA_TRY(append_block(
         {block.stamps, block.orientation, block.acceleration, block.angular_velocity, block.valid},
@@ -148,8 +150,8 @@ Result<NamedNodes> nodes_of_take(FileSystem& files, const std::string& path,
   TakeSlab slab;
   while (KA_TRY(reader.next(slab))) {
     auto& rows = std::get<ImuRows>(slab.rows[wanted]);
-    // A take may have turned all nodes into the space of the root's node. The model needs each node
-    // in its own space.
+    // A take may give all nodes relative to the root's node. The model needs each node in its own
+    // coordinates.
     if (!group.root_node.empty()) bring_from_root(group, rows);
     KA_TRY(append_block(
         {slab.stamps, rows.orientation, rows.acceleration, rows.angular_velocity, rows.valid}, 0,
@@ -158,7 +160,8 @@ Result<NamedNodes> nodes_of_take(FileSystem& files, const std::string& path,
   return out;
 }
 
-/// Several streams of one name make one set of nodes: each device sends its own nodes.
+/// If each node is a device with its own stream, all streams of the same name form one set of
+/// nodes.
 Result<NamedNodes> nodes_of(const std::string& path, const WantedStream& stream, Call& call) {
   FileSystem& files = call.surroundings.files;
   if (KA_TRY(kind_of_file(files, path)) == FileKind::take)
@@ -168,7 +171,7 @@ Result<NamedNodes> nodes_of(const std::string& path, const WantedStream& stream,
   NamedNodes out{streams.front()->name, {}, {}, {}};
   for (const RecordedStream* one : streams) {
     const auto& nodes = std::get<ImuInput>(one->data);
-    // The tracks of this stream are those from `first` on.
+    // The tracks from index `first` on belong to this stream.
     const std::size_t first = out.tracks.size();
     const StreamOptions options =
         input.manifest ? options_of(*input.manifest, one->name) : StreamOptions{};

@@ -12,23 +12,22 @@
 
 namespace kinalign {
 
-/// All arrays have one entry for each of the S nodes, in the same order. The tracks have their own
-/// stamps, since nodes do not sample together.
+/// Nodes with their names and samples. All arrays have one element for each node, in the same
+/// order. Each track has its own stamps, since nodes do not sample at the same time.
 struct NamedNodes {
   std::string stream;
-  std::vector<std::string> names;         // [S]
-  std::vector<NodeTrack> tracks;          // [S] in each node's own space
-  std::vector<std::optional<Quat>> worn;  // [S] for CalibrationOptions::worn, from a stated
-                                          // mounting
+  std::vector<std::string> names;         // for each node
+  std::vector<NodeTrack> tracks;          // samples in each node's own coordinates
+  std::vector<std::optional<Quat>> worn;  // the stated mounting, for CalibrationOptions::worn
   std::vector<std::string> warnings{};    // from the file's reader
 };
 
-/// Samples that are not valid, and stamps that repeat or step back, are left out. Nodes in the
-/// space of a root are brought back to their own space. Takes may be read only in a child process
-/// (guarded.h).
+/// Reads the nodes of a take. Invalid samples, and samples whose stamps repeat or step back, are
+/// left out. Nodes that the take gives relative to the root are converted to their own coordinates.
+/// Only a child process may read a take (guarded.h).
 Result<NamedNodes> nodes_of_take(FileSystem& files, const std::string& path,
                                  const WantedStream& stream);
-/// The same for any file. Several streams of that name (one for each device) are joined.
+/// Reads the nodes of any file. Streams of the same name, one for each device, are joined.
 Result<NamedNodes> nodes_of(const std::string& path, const WantedStream& stream, Call& call);
 
 }  // namespace kinalign

@@ -16,14 +16,15 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_values = std::size_t{1} << 29U;  // frames x joints, for memory
+// frames x joints; the limit protects the memory
+constexpr std::size_t most_values = std::size_t{1} << 29U;
 constexpr std::string_view joints_kind = "joints";
 
-/// Appends the rows whose stamps rise, and counts the others.
+/// Appends the rows whose stamps rise. All other rows are only counted.
 Result<void> append(NamedPoints& out, const std::vector<Time>& stamps,
                     const std::vector<double>& positions, const std::vector<Tracking>& state) {
   const std::size_t joints = out.joints.size();
-  // The product is the number of cells. Positions need three doubles for each of them.
+  // The limit is for frames times joints; each of them has three doubles.
   if ((out.frames.size() + stamps.size()) * joints > most_values) {
     return Failure(Error{"", 0, "a stream that fits into memory", "a longer stream"});
   }
@@ -33,7 +34,7 @@ Result<void> append(NamedPoints& out, const std::vector<Time>& stamps,
       continue;
     }
     out.frames.stamps.push_back(stamps[t]);
-    // row and count are in cells; positions have three numbers for each cell.
+    // `row` and `count` count joints. Each joint has three numbers in the positions.
     const auto row = static_cast<std::ptrdiff_t>(t * joints),
                count = static_cast<std::ptrdiff_t>(joints);
     out.frames.positions.insert(out.frames.positions.end(), positions.begin() + 3 * row,
@@ -44,9 +45,8 @@ Result<void> append(NamedPoints& out, const std::vector<Time>& stamps,
   return {};
 }
 
-/// States for a skeleton, which has none of its own: each joint is tracked in valid rows and
-/// missing in others.
-/// `valid` [T]; empty: all rows are valid.
+/// Makes the states of a skeleton's joints, which have none: "tracked" in valid rows, "missing" in
+/// others. If `valid` is empty, all rows are valid.
 std::vector<Tracking> all_tracked(std::size_t rows, std::size_t joints,
                                   const std::vector<std::uint8_t>& valid) {
   std::vector<Tracking> out(rows * joints, Tracking::tracked);
@@ -56,7 +56,7 @@ std::vector<Tracking> all_tracked(std::size_t rows, std::size_t joints,
   return out;
 }
 
-/// A state counts only if its cell is valid.
+/// The states of a group of points. A joint that is marked as invalid becomes missing.
 std::vector<Tracking> where_valid(const PointRows& rows) {
   std::vector<Tracking> out = rows.state;
   for (std::size_t i = 0; i < out.size() && i < rows.valid.size(); ++i) {
@@ -65,21 +65,22 @@ std::vector<Tracking> where_valid(const PointRows& rows) {
   return out;
 }
 
-/// The index of the wanted group. If no name is given, the only group of points.
+/// The index of the wanted group in a take. If no name is given, the only group of points.
 Result<std::size_t> group_of(const TakeHeader& header, const std::string& path,
                              const WantedStream& wanted) {
   std::vector<StreamChoice> all;
   for (std::size_t g = 0; g < header.groups.size(); ++g) {
     const TakeGroup& group = header.groups[g];
-    // A name may select a skeleton too. Without a name only groups of points count.
+    // The user may also choose a skeleton by its name. Without a name only groups of points are
+    // considered.
     const bool is_usual = std::holds_alternative<PointGroup>(group.kind);
     if (!std::holds_alternative<ImuGroup>(group.kind)) all.push_back({group.name, g, is_usual});
   }
   return choose_stream(all, wanted, joints_kind, path);
 }
 
-/// If no name is given, the only stream of points is read, or the only stream there is, even if it
-/// is a skeleton.
+/// Finds the wanted stream. If no name is given: the only stream of points, or the only stream in
+/// the file, even if it is a skeleton.
 Result<const RecordedStream*> stream_of(const Recording& recording, const std::string& path,
                                         const WantedStream& wanted) {
   const auto& streams = recording.streams;
@@ -94,7 +95,7 @@ Result<const RecordedStream*> stream_of(const Recording& recording, const std::s
   return &streams[KA_TRY(choose_stream(all, wanted, joints_kind, path))];
 }
 
-/// Reads all frames of a stream of points, with stamps on the take's clock.
+/// Reads all frames of a stream of points. Their stamps are in the time of the take.
 Result<void> read_points(const TimeModel& clock, const PointInput& input, NamedPoints& out) {
   out.joints = input.joint_names;
   const auto pass = KA_TRY(input.passes());
@@ -106,7 +107,7 @@ Result<void> read_points(const TimeModel& clock, const PointInput& input, NamedP
   return {};
 }
 
-/// Reads all frames of a skeleton as the global positions of its joints.
+/// Reads all frames of a skeleton as global positions of its joints.
 Result<void> read_clip(const TimeModel& clock, const ClipInput& input, NamedPoints& out) {
   out.joints = input.skeleton.joint_names;
   const auto pass = KA_TRY(input.passes());
@@ -116,7 +117,7 @@ Result<void> read_clip(const TimeModel& clock, const ClipInput& input, NamedPoin
     for (Time& stamp : stamps) stamp = take_time(clock, stamp);
     const ClipRows rows = own_rows(input.skeleton, std::move(block));
     KA_TRY(append(out, stamps, rows.positions, all_tracked(stamps.size(), out.joints.size(), {})));
-    // The block was moved from. A new one makes its state defined before the next pass fills it.
+    // The block was moved away, so the next turn begins with an empty one.
     block = {};
   }
   return {};
@@ -136,7 +137,7 @@ Result<NamedPoints> points_of_take(FileSystem& files, const std::string& path,
   }
   TakeSlab slab;
   while (KA_TRY(reader.next(slab))) {
-    // The group's kind is the same in every slab, so one of both branches is always taken.
+    // A group has the same kind in all blocks, so it is always either points or a skeleton.
     if (const auto* rows = std::get_if<PointRows>(&slab.rows[wanted])) {
       KA_TRY(append(out, slab.stamps, rows->positions, where_valid(*rows)));
     } else if (const auto* clip = std::get_if<ClipRows>(&slab.rows[wanted])) {
@@ -175,7 +176,7 @@ std::vector<std::string> warnings_of(const NamedPoints& points, const EvenFrames
     out.push_back(fmt::format("{} frames are left out: their stamps repeat or step back",
                               grouped(points.left_out)));
   }
-  // These two warnings are about the person: something else was taken for a joint, or for the body.
+  // The next two warnings mean that the Kinect took another object for a joint or for the person.
   if (frames.far > 0) {
     out.push_back(fmt::format("{} joints lie more than 1.6 m from the root and count as missing",
                               grouped(frames.far)));

@@ -13,27 +13,28 @@
 
 namespace kinalign {
 
-/// The whole stream in memory: T frames of J joints. Stamps are on the take's clock.
+/// The joints of a whole stream in memory. Stamps are in the time of the take.
 struct NamedPoints {
   std::string stream;
   std::vector<std::string> joints;
-  PointFrames frames;                   // stamps rise
+  PointFrames frames;                   // frames whose stamps rise
   std::size_t left_out = 0;             // frames whose stamps repeat or step back
   std::vector<std::string> warnings{};  // from the file's reader
 };
 
-/// A skeleton's joints are read as tracked points. Stamps that repeat or step back are left out.
-/// Takes may be read only in a child process (guarded.h).
+/// Reads the joints of a take. The joints of a skeleton become tracked points. Frames whose stamps
+/// repeat or step back are left out. Only a child process may read a take (guarded.h).
 Result<NamedPoints> points_of_take(FileSystem& files, const std::string& path,
                                    const WantedStream& stream);
-/// The same for any file.
+/// Reads the joints of any file.
 Result<NamedPoints> points_of(const std::string& path, const WantedStream& stream, Call& call);
 
-/// The fraction of cells with that state: 0 missing, 1 inferred, 2 tracked. 0 without cells.
+/// The fraction of elements with a state: 0 missing, 1 inferred, 2 tracked. Returns 0 if there are
+/// no elements.
 double share_of(const std::vector<std::uint8_t>& seen, std::uint8_t state);
 
-/// Warnings about a Kinect before a model gets its frames: the reader's, and those about `frames`,
-/// which `points` were brought to.
+/// The warnings about a Kinect's input: those of the file's reader, and those about `frames`, the
+/// same joints at the model's frame rate.
 std::vector<std::string> warnings_of(const NamedPoints& points, const EvenFrames& frames);
 
 }  // namespace kinalign

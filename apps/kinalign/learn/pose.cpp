@@ -26,7 +26,7 @@ struct PoseWords {
   LiveWords live;
 };
 
-/// The command line of `kinalign pose`. A live run may end without a file.
+/// The command line of `kinalign pose`. -o may be missing in a live run only.
 Usage describe_pose(PoseWords& o) {
   Usage usage;
   usage.positionals = {{"IN", "a take, a recording, a manifest or a file of nodes", &o.in, 0}};
@@ -46,12 +46,12 @@ Usage describe_pose(PoseWords& o) {
   return usage;
 }
 
-/// The member "body": the bones are the model's, or those of --body.
+/// The JSON member "body": the bones are those of the model or of --body.
 Json body_of_answer(const PoseModel& model, const PoseWords& o) {
   return about_body(model.body.skeleton, o.body.empty() ? "the model" : "--body");
 }
 
-/// Reads and checks the model, and sets the bones of --body before the first answer.
+/// Reads and checks the model. The bones of --body are set before the first answer.
 Result<PoseSolver> solver_of(const std::string& path, const PoseWords& o, Call& call) {
   const std::string bytes = KA_TRY(read_whole(call.surroundings.files, path, most_model_bytes));
   PoseSolver out = KA_TRY(PoseSolver::make(KA_TRY(read_pose_model(bytes, path))));
@@ -60,22 +60,21 @@ Result<PoseSolver> solver_of(const std::string& path, const PoseWords& o, Call& 
   return out;
 }
 
-/// A single sample has no duration, so such a node counts as absent.
+/// True if there is a node on the head with at least two samples; a single sample has no duration.
 bool has_head(const NamedNodes& nodes) {
   const auto head = node_at(nodes.names, "head");
   return head && nodes.tracks[*head].stamps.size() > 1;
 }
 
-/// The model of --model. Without the flag: the shipped model with a node on the head if the stream
-/// has one, else the shipped model without.
+/// The model of --model. Without the flag, a model that comes with kinalign: "pose_head" if there
+/// is a node on the head, else "pose".
 Result<std::string> model_for(const NamedNodes& nodes, const PoseWords& o) {
   return model_named(o.model, has_head(nodes) ? "pose_head" : "pose");
 }
 
-/// Solves the pose and writes it. The model depends on the stream's nodes, so it is loaded after
-/// them.
-/// The order is: choose the model, calibrate, solve, write. `nodes` is moved from, so its names are
-/// kept first.
+/// Computes the poses and writes them. The nodes in the stream decide about the model, so it is
+/// chosen first; then the nodes are calibrated. `nodes` is moved into the calibration, so its names
+/// are copied before.
 Result<Json> solve_into(NamedNodes nodes, const PoseWords& o, Call& call) {
   const std::string path = KA_TRY(model_for(nodes, o));
   PoseSolver solver = KA_TRY(solver_of(path, o, call));
@@ -84,7 +83,7 @@ Result<Json> solve_into(NamedNodes nodes, const PoseWords& o, Call& call) {
   const PosedNodes posed =
       KA_TRY(calibrated_nodes(model.layout, model.body.skeleton, std::move(nodes), o.worn));
   const NodeFrames calibrated = on_bones(posed.calibration, posed.even.worn);
-  // The model's path is in the JSON, because it was chosen by the data.
+  // The data chose the model, so the JSON states its path.
   Json about{{"stream", names.stream},          {"frames", calibrated.frames()},
              {"rate_hz", model.layout.rate_hz}, {"joints", model.body.skeleton.joints()},
              {"method", model.facts.method},    {"model", path},
@@ -98,9 +97,11 @@ std::string pose_text(const Json& about, const std::string& out) {
   return answer_line(about, out) + body_line(about) + node_lines(about);
 }
 
-/// Solves the samples that a running record receives. Writes a file if -o names one.
+/// Computes the poses for data that a running `record` receives. If -o names a file, the clip is
+/// written there.
 Result<int> solve_live(const PoseWords& o, Call& call) {
-  // The nodes of a live run are not known yet, so the model without a head is the default.
+  // At the start of a live run the nodes are not known, so the default is the model without a node
+  // on the head.
   const std::string path = KA_TRY(model_named(o.model, "pose"));
   PoseSolver solver = KA_TRY(solver_of(path, o, call));
   LiveJob job{o.live, o.stream, "", {}};
@@ -112,7 +113,7 @@ Result<int> solve_live(const PoseWords& o, Call& call) {
   return end_live(std::move(clip), path, pose_text(about, call.common.out), about, call);
 }
 
-/// Solves one file and writes the result. The exit code is 1 if there were warnings.
+/// Computes the poses of one file and writes them. The exit code is 1 if there are warnings.
 Result<int> run_pose(PoseWords& o, Call& call) {
   if (!o.live.live.empty()) return solve_live(o, call);
   const std::string& in = o.in.front();

@@ -18,16 +18,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The limit protects the memory. It holds answers for all bodies and their mirror images.
+// A larger file of answers is refused, to protect the memory. It has the answers to all bodies and
+// their mirror images.
 constexpr std::size_t most_projected_bytes = std::size_t{4} << 30U;
 
-/// Computed answers, found by the positions of the body.
-/// The answer function has no index, only the body itself. Equal positions are the same body, so
-/// they serve as the key.
+/// The computed answers. A function of type Answer gets only a body and no index, so the positions
+/// of the body are the key.
 using KnownAnswers = std::map<std::vector<float>, std::vector<float>>;
 
-/// The bodies as a SafeTensors file for kinalign-learn: "0.positions" [T,J,3] m and "0.seen" [T,J],
-/// and so on.
+/// Writes bodies as SafeTensors for kinalign-learn: "0.positions" [frame, joint, 3] in m, "0.seen"
+/// [frame, joint], "1.positions" and so on.
 std::string written_bodies(const std::vector<JointFrames>& bodies) {
   TensorFile file;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -50,7 +50,7 @@ Result<ProjectedAnswers> projected_answers(const std::string& path, const Denois
                                            const std::vector<JointFrames>& bodies, Call& call) {
   FileSystem& files = call.surroundings.files;
   std::vector<JointFrames> all = bodies;
-  // A steadier asks for the mirror image as well. It is computed in the same run.
+  // A Steadier also needs the answer to the mirror image, so it is computed in the same run.
   for (const JointFrames& body : bodies) {
     all.push_back(body);
     mirror(all.back(), mirror_partners(layout.inputs));
@@ -59,7 +59,7 @@ Result<ProjectedAnswers> projected_answers(const std::string& path, const Denois
   const std::string in = scratch.name() + "/bodies.safetensors",
                     out = scratch.name() + "/answers.safetensors",
                     job_file = scratch.name() + "/job.json";
-  // "project" in place of "method" tells the worker not to train.
+  // The member "project" in place of "method" tells kinalign-learn to project and not to train.
   const Json job{{"schema", "kinalign.training_job/1"},
                  {"project", path},
                  {"bodies", in},
@@ -67,7 +67,7 @@ Result<ProjectedAnswers> projected_answers(const std::string& path, const Denois
                  {"threads", call.jobs}};
   KA_TRY(write_whole(files, in, written_bodies(all), Overwrite::yes));
   KA_TRY(write_whole(files, job_file, job.dump(), Overwrite::yes));
-  // The last line has the gaps before and after. The answers themselves are in the file.
+  // The last line has the errors of the constraints before and after. The answers are in the file.
   const Json last = Json::parse(KA_TRY(run_worker(job_file, {.progress = call.console.progress()})),
                                 nullptr, false);
   TensorFile answers =
@@ -79,7 +79,7 @@ Result<ProjectedAnswers> projected_answers(const std::string& path, const Denois
   }
   ProjectedAnswers result;
   result.answer = [known](const JointFrames& body) {
-    // at() throws for an unknown body. Callers ask only for those that they gave.
+    // at() throws for an unknown body, but callers ask only for bodies that they gave.
     return Denoised{known->at(body.positions), {}};
   };
   result.before = gaps_of(last.value("before", Json::object()));

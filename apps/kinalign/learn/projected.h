@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers of a model, projected onto constraints (kinalign/learn/projection.h) by kinalign-learn.
+// Answers of a model that kinalign-learn has projected onto constraints
+// (kinalign/learn/projection.h).
 #pragma once
 
 #include "apps/cli/verb.h"
@@ -11,21 +12,20 @@
 
 namespace kinalign {
 
-/// The distance of motions from their constraints, mean of all bodies: the moves of standing feet
-/// from frame to frame, and the deviations of bones from their usual length.
-/// Both values are measured without the truth, so they can be printed for any motion.
+/// The errors of constraints, as means over all bodies: how far standing feet move from frame to
+/// frame, and how much bones differ from their usual length. No truth is needed to measure them.
 struct ConstraintGaps {
   double feet_cm = 0.0, bone_cm = 0.0;
 };
 
 struct ProjectedAnswers {
-  Answer answer;  // known only for those bodies and their mirror images
+  Answer answer;  // may be called only for the given bodies and their mirror images
   ConstraintGaps before, after;
 };
 
-/// The answers of a model, whose file is `path`, to these bodies. One run of kinalign-learn
-/// computes all of them, since it takes a second to start. Fails if it is not installed, or if the
-/// model's network has no hidden space.
+/// The answers of the model in the file `path` to these bodies. One run of kinalign-learn computes
+/// all of them, because starting it takes a second. Fails if kinalign-learn is not installed, or if
+/// the model's network has no hidden space.
 Result<ProjectedAnswers> projected_answers(const std::string& path, const DenoiseLayout& layout,
                                            const std::vector<JointFrames>& bodies, Call& call);
 

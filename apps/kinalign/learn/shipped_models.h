@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The models that come with the program.
+// Finds the models that come with kinalign.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -8,18 +8,17 @@
 
 namespace kinalign {
 
-/// The file of the shipped model with that name ("denoise", "pose"). Searches
-/// ../share/kinalign/models from the program's folder, then the tree that the program was built
-/// from. Fails if neither has it.
+/// The file of a model that comes with kinalign ("denoise", "pose"). It is searched in
+/// ../share/kinalign/models from the program's folder, then in the source tree from which the
+/// program was built. Fails if the file is in neither folder.
 Result<std::string> shipped_model(const std::string& name);
 
-/// The model that --model names: a file, or the name of a shipped model ("pose_head") if no file
-/// has that name. `usual`: the shipped model if `given` is empty.
-/// A name has neither '.' nor '/'. Anything else is returned as it is, so that reading it gives the
-/// error.
+/// The file that --model means. `given` may be a file, or the name of a model that comes with
+/// kinalign ("pose_head") if no file has this name. If `given` is empty, the model `usual` is used.
+/// A text that is neither is returned as it is, so that reading it gives the error.
 Result<std::string> model_named(const std::string& given, const std::string& usual);
 
-/// The folder of this program.
+/// The folder in which this program's file is.
 std::string program_folder();
 
 }  // namespace kinalign

@@ -28,7 +28,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-/// The options of `kinalign train`. An empty text or a 0 stands for the method's default.
+/// The options of `kinalign train`. An empty text or 0 means the method's default.
 struct Train {
   std::vector<std::string> method;
   std::string data, windows, split, where;
@@ -38,10 +38,10 @@ struct Train {
   bool resume = false, prepare = false;
 };
 
-/// The method of the command line, which accepts only known ones.
+/// The method that the command names. The parser has refused unknown names.
 const TrainedMethod& method_of(const Train& o) { return *find_trained(o.method.front()); }
 
-/// The command line of `kinalign train`, with the checks that need several flags.
+/// The command line of `kinalign train`, with checks that concern several flags.
 Usage describe_train(Train& o) {
   Usage usage;
   usage.positionals = {{"METHOD", "method to train", &o.method}};
@@ -93,8 +93,8 @@ Usage describe_train(Train& o) {
   return usage;
 }
 
-/// The folder of a run, in the same folder as its model: "m.training" for "m.safetensors".
-/// Everything that a run writes besides the model is there: job, log, curves, checkpoint, lock.
+/// The folder of a run, beside its model: "m.training" for "m.safetensors". It contains everything
+/// but the model: job, log, curves, checkpoint and lock.
 std::string run_folder(const std::string& model) {
   return model.substr(0, model.rfind('.')) + ".training";
 }
@@ -110,18 +110,18 @@ Result<std::string> hash_of(FileSystem& files, const std::string& path) {
   }
 }
 
-/// The job file's JSON. `hash` is the windows' SHA-256; `from_hash` that of the model that the
-/// training goes on from. The identity covers what changes the result, so that --resume refuses
-/// another training.
+/// Makes the JSON of the job file. `hash`: the SHA-256 of the windows. `from_hash`: that of the
+/// model whose training is continued. The identity is a hash of all that changes the result, so
+/// that --resume can refuse another training.
 Json job_of(const Train& o, const std::string& windows, const std::string& hash,
             const std::string& from_hash, Call& call) {
   const std::string folder = run_folder(call.common.out);
-  // Defaults are left out of the job.
+  // Options with their defaults are not stated in the job.
   Json options{{"seed", o.seed}};
   if (o.steps > 0) options["steps"] = o.steps;
   if (o.patience > 0) options.update({{"patience", o.patience}, {"judge_every", 100}});
   Json job{{"schema", "kinalign.training_job/1"}, {"method", o.method.front()}};
-  // A method may have no rough stream: nodes and a Kinect are then simulated from the mocap.
+  // Some methods have no input stream; nodes and a Kinect are then simulated from the mocap.
   const std::string input = rough_stream(o.input, method_of(o).task);
   if (!input.empty()) job["input"] = input;
   job["truth"] = o.truth;
@@ -131,8 +131,8 @@ Json job_of(const Train& o, const std::string& windows, const std::string& hash,
   if (o.vary_speed > 0.0) job["vary_speed"] = o.vary_speed;
   if (o.vary_size > 0.0) job["vary_size"] = o.vary_size;
   if (!from_hash.empty()) job["from_sha256"] = from_hash;
-  job["identity"] = sha256_of(job.dump() + hash);  // the same wherever the files lie
-  // Members from here on do not belong to the identity: they say where files lie and how to run.
+  job["identity"] = sha256_of(job.dump() + hash);  // does not depend on the folders of the files
+  // The members below do not belong to the identity: they say where files are and how to run.
   if (!o.from.empty()) job["from"] = o.from;
   job["windows"] = windows;
   job["out"] = call.common.out;
@@ -143,17 +143,17 @@ Json job_of(const Train& o, const std::string& windows, const std::string& hash,
   return job;
 }
 
-/// The processes of one training, and those of them that run here.
-/// Process 0 waits at address and port for all others. A training of one process needs neither.
+/// The processes of one training, and those that run on this machine. Process 0 waits at `address`
+/// and `port` for all others. A training with one process needs neither.
 struct Places {
-  std::size_t first = 0, here = 1, all = 1;  // ranks first ... first + here of `all`
-  std::string address, interface {};         // process 0's; empty if it is alone
+  std::size_t first = 0, here = 1, all = 1;  // numbers first to first + here - 1 of `all` run here
+  std::string address, interface {};         // of process 0; empty if it is alone
   std::int64_t port = 0;
 
   bool is_first() const { return first == 0; }
 };
 
-// The port is used if MASTER_PORT is empty.
+// The port if the variable MASTER_PORT is empty.
 constexpr std::int64_t usual_port = 29500;  // PyTorch's default
 
 Result<std::int64_t> port_of(const std::string& text) {
@@ -162,13 +162,13 @@ Result<std::int64_t> port_of(const std::string& text) {
   return Failure(Error{"MASTER_PORT", 0, "a TCP port", shown(text)});
 }
 
-/// The processes that --processes asks for, or those that srun, mpirun or torchrun state in the
-/// environment.
+/// The processes that --processes asks for, or those that srun, mpirun or torchrun state in
+/// environment variables.
 Result<Places> places_of(const Train& o, Call& call) {
   const auto& variable = call.surroundings.variable;
   const BuildShare step = KA_TRY(step_share_of(variable));
   const auto processes = static_cast<std::size_t>(o.processes);
-  // Neither a cluster nor --processes: one process trains alone.
+  // Without a cluster and without --processes one process trains alone.
   if (step.size == 1 && processes == 1) return Places{};
   if (step.size == 1) return Places{0, processes, processes, "127.0.0.1", "", KA_TRY(free_port())};
   const std::string address = variable("MASTER_ADDR");
@@ -178,11 +178,11 @@ Result<Places> places_of(const Train& o, Call& call) {
                          "the address of the first process's machine in the environment",
                          "no address in " + who});
   }
-  // The cluster decides how many processes there are. Both numbers together could contradict each
-  // other.
+  // On a cluster the starter decides how many processes there are, so --processes could contradict
+  // it.
   if (processes > 1) return Failure(Error{"--processes", 0, "1 in each process of a cluster", who});
-  // Each process would cut its own windows, and cutting them at the same time into one folder would
-  // clash.
+  // Without --windows each process would cut windows, and all at the same time into the same
+  // folder.
   if (o.windows.empty()) {
     return Failure(
         Error{"--data", 0, "a file of windows (--windows) that all processes read", who});
@@ -195,11 +195,11 @@ Result<Places> places_of(const Train& o, Call& call) {
                 KA_TRY(port_of(variable("MASTER_PORT")))};
 }
 
-/// Writes a job file for each process that runs here, and returns their names.
-/// The job files differ only in their place. They share windows, output and identity.
+/// Writes a job file for each process on this machine and returns the names of the files. The jobs
+/// differ only in the number of the process; windows, output and identity are the same.
 Result<std::vector<std::string>> write_jobs(Json job, const Places& places, Call& call) {
   const std::string folder = run_folder(call.common.out);
-  // The threads are shared among the processes of this machine.
+  // The processes of this machine share its threads.
   job["threads"] = std::max<std::size_t>(call.jobs / places.here, 1);
   std::vector<std::string> out;
   for (std::size_t rank = places.first; rank < places.first + places.here; ++rank) {
@@ -216,8 +216,8 @@ Result<std::vector<std::string>> write_jobs(Json job, const Places& places, Call
   return out;
 }
 
-/// `last`: the last line of kinalign-learn.
-/// The judgement is there only if the windows have a validation part.
+/// Prints the result of a training. `last`: the last line of kinalign-learn. The line about
+/// judgement is printed only if the windows have a validation part.
 void print_trained(const Train& o, const Json& last, Call& call) {
   std::string text =
       fmt::format("{}: trained, loss {:.4g}", o.method.front(), last.value("loss", 0.0));
@@ -230,9 +230,8 @@ void print_trained(const Train& o, const Json& last, Call& call) {
   call.console.print_json(last.dump(1));
 }
 
-/// Prints the files that the other machine needs, and the command to run there.
-/// The jobs have relative paths as the user typed them, so the files must lie in the same places
-/// there.
+/// Prints the files that another machine needs, and the command to run there. The jobs have the
+/// paths that the user typed, so the files must have the same paths on that machine.
 void print_prepared(const Train& o, const std::vector<std::string>& jobs,
                     const std::string& windows, Call& call) {
   std::string text = harmless(windows) + ": windows\n";
@@ -244,7 +243,8 @@ void print_prepared(const Train& o, const std::vector<std::string>& jobs,
   call.console.print_json(Json{{"windows", windows}, {"jobs", jobs}}.dump(1));
 }
 
-/// The file of windows: the given one, or one cut from the data set into the run's folder.
+/// The file of windows that the user gave. Without one, windows are cut from the data set into the
+/// run's folder.
 Result<std::string> windows_of(const Train& o, const std::string& folder) {
   if (!o.windows.empty()) return o.windows;
   std::string file = folder + "/windows.npz";
@@ -254,15 +254,15 @@ Result<std::string> windows_of(const Train& o, const std::string& folder) {
                              .input = rough_stream(o.input, method_of(o).task),
                              .truth = o.truth,
                              .rate_hz = o.rate_hz};
-  // The windows are cut into the folder of the run, which the lock protects.
+  // The lock protects the run's folder, so no other training writes windows there.
   KA_TRY(cut_windows(wanted, method_of(o).task, file));
   return file;
 }
 
-/// Runs kinalign-learn on the jobs and returns its last line. Removes all job files but the first
-/// process's.
+/// Runs kinalign-learn with all jobs and returns its last line. Afterwards only the job file of the
+/// first process is kept.
 Result<Json> run_jobs(const std::vector<std::string>& jobs, Call& call) {
-  // Only the first process reports. The others do the same steps at the same time.
+  // All processes do the same steps at the same time, so only the first one reports progress.
   const WorkerWatch watch{.progress = call.console.progress(),
                           .warn = [&](const std::string& text) {
                             call.console.note("kinalign train: warning: " + harmless(text));
@@ -275,11 +275,11 @@ Result<Json> run_jobs(const std::vector<std::string>& jobs, Call& call) {
   return last;
 }
 
-/// Locks the folder, so that no other training uses it. The system frees the lock when the file is
-/// closed, also if this program crashes, so the file "lock" may stay.
+/// Locks the folder, so that no other training uses it. The system removes the lock when the file
+/// is closed, even if this program crashes. The file "lock" may therefore stay.
 Result<Handle> locked(const std::string& folder) {
   Handle file(::open((folder + "/lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644));
-  // LOCK_NB: a second training is refused at once and does not wait.
+  // With LOCK_NB a second training does not wait but fails at once.
   if (file.fd() >= 0 && ::flock(file.fd(), LOCK_EX | LOCK_NB) == 0) return file;
   return Failure(Error{folder, 0, "a folder that no other training uses now",
                        file.fd() < 0 ? std::strerror(errno) : "another training in this folder"});
@@ -290,7 +290,7 @@ Result<Handle> open_folder(const Train& o, const std::string& folder, const Plac
                            Call& call) {
   KA_TRY(make_folders(folder));
   Handle out;
-  // Other processes of the same training must not lock it: they share the folder.
+  // Other processes of the same training use the same folder, so only the first one locks it.
   if (places.is_first()) out = KA_TRY(locked(folder));
   std::error_code fault;
   if (o.resume && !fs::exists(folder + "/checkpoint.safetensors", fault)) {
@@ -300,23 +300,23 @@ Result<Handle> open_folder(const Train& o, const std::string& folder, const Plac
   return out;
 }
 
-/// Writes the jobs. A shipped model to go on from is found by its name first.
+/// Writes the job files. If --from names a model that comes with kinalign, its file is found first.
 Result<std::vector<std::string>> jobs_of(Train& o, const std::string& windows, const Places& places,
                                          Call& call) {
   FileSystem& files = call.surroundings.files;
   if (!o.from.empty()) o.from = KA_TRY(model_named(o.from, ""));
   const std::string from_hash = o.from.empty() ? "" : KA_TRY(hash_of(files, o.from));
-  // The hash is of the file's bytes, so a job is the same on every machine that has this file.
+  // The hash is that of the file's bytes, so the job is the same on every machine with this file.
   const std::string hash = KA_TRY(hash_of(files, windows));
   return write_jobs(job_of(o, windows, hash, from_hash, call), places, call);
 }
 
-/// Trains a model. Only the first of several processes prints the result and removes the windows it
-/// cut.
+/// Trains a model. Only the first of several processes prints the result and removes windows that
+/// were cut for this run.
 Result<int> run_train(Train& o, Call& call) {
   const std::string& out = call.common.out;
   std::error_code fault;
-  // The check comes first: a training may take days.
+  // A training may take days, so the output is checked before it.
   if (fs::exists(out, fault) && !call.common.force) {
     return Failure(
         Error{out, 0, "no file of that name (--force overwrites)", "a file of that name"});
@@ -331,7 +331,7 @@ Result<int> run_train(Train& o, Call& call) {
     return 0;
   }
   const Json last = KA_TRY(run_jobs(jobs, call));
-  // The model is written by process 0 of the training. The other starters of a cluster end quietly.
+  // Process 0 writes the model. The other starters of a cluster print nothing.
   if (!places.is_first()) return 0;
   // Windows that the user gave are never removed.
   if (o.windows.empty()) fs::remove(windows, fault);

@@ -20,9 +20,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double pose_windows_hz = 60.0;  // the windows' rate; nodes are simulated from them
+constexpr double pose_windows_hz = 60.0;  // frame rate of windows from which nodes are simulated
 
-/// One row for each value of Learns, in the order of the enum: what_it_does() uses it as an index.
+/// The words for each task, in the order of Learns, because what_it_does() uses the value as an
+/// index.
 struct TaskWords {
   Learns task;
   std::string_view name, does;
@@ -32,7 +33,8 @@ constexpr std::array<TaskWords, 3> task_words{
      {Learns::pose, "pose", "computes a pose from nodes"},
      {Learns::fuse, "fuse", "computes a pose from a Kinect and nodes"}}};
 
-/// A flag that only methods of these tasks use. `why` follows the name of another method.
+/// A flag that only methods with these tasks use. `why`: the reason, printed after the name of
+/// another method.
 struct TaskFlag {
   const char* flag;
   std::vector<Learns> tasks;
@@ -50,8 +52,8 @@ const std::array<TaskFlag, 7> task_flags{
       ", whose input is simulated nodes"},
      {"rate", {Learns::denoise}, "a method that cleans a stream", ", which works at 30 Hz"}}};
 
-/// The members that every job has.
-/// `learn` and `judge` are names of takes. Members with defaults are left out.
+/// The JSON members that every job has. Members with their defaults are left out. `learn` and
+/// `judge` are names of takes.
 Json begun_job(const TrainingWanted& wanted, Call& call) {
   Json out{{"schema", "kinalign.training_job/1"},
            {"method", wanted.method},
@@ -76,12 +78,12 @@ std::optional<Learns> learns_of(const std::string& task) {
   return std::nullopt;
 }
 
-// The words follow a method's name: "cnn, which cleans a Kinect".
+// The words are printed after the name of a method: "cnn, which cleans a Kinect".
 std::string what_it_does(Learns task) {
   return std::string(task_words[static_cast<std::size_t>(task)].does);
 }
 
-/// The names are those of kinalign-learn. `summary` says where a method was published.
+/// The names are those of kinalign-learn. `summary` states where the method was published.
 const std::vector<TrainedMethod>& trained_methods() {
   static const std::vector<TrainedMethod> all{
       {"refine", "ours", Learns::denoise},
@@ -132,7 +134,7 @@ Field truth_field(std::string& truth) {
   return text_flag("truth", "the precise stream", &truth, "NAME");
 }
 
-/// The flag --nodes, for methods that get nodes.
+/// The flag --nodes, for methods whose input are nodes.
 Field nodes_field(std::string& nodes) {
   return text_flag("nodes",
                    "for poses and fusion: 3 to 6 of wrist_left, wrist_right, ankle_left, "
@@ -141,7 +143,7 @@ Field nodes_field(std::string& nodes) {
 }
 
 Result<void> check_task_flags(const TrainedMethod& method, const Sources& given) {
-  // A flag without effect is wrong use: a user would believe that it had one.
+  // A flag without effect is wrong use, because the user expects an effect.
   for (const TaskFlag& one : task_flags) {
     const bool is_used =
         std::find(one.tasks.begin(), one.tasks.end(), method.task) != one.tasks.end();
@@ -153,7 +155,8 @@ Result<void> check_task_flags(const TrainedMethod& method, const Sources& given)
 
 Result<void> cut_windows(const WindowsWanted& wanted, Learns task, const std::string& file) {
   const bool is_denoise = task == Learns::denoise;
-  // The lengths are in rows; windows do not overlap, because the step is the length.
+  // The length of a window in rows. It is also the step from one window to the next, so windows do
+  // not overlap.
   const std::string length = is_denoise ? "32" : "64";
   const double rate_hz = is_denoise ? wanted.rate_hz : pose_windows_hz;
   std::vector<std::string> words{
@@ -163,13 +166,14 @@ Result<void> cut_windows(const WindowsWanted& wanted, Learns task, const std::st
       "--stream", wanted.truth};
   if (!wanted.input.empty()) words.insert(words.end(), {"--stream", wanted.input});
   if (!wanted.split.empty()) words.insert(words.end(), {"--split", wanted.split});
-  // A bad take would teach the model its faults, so it is left out unless the user says otherwise.
+  // Takes with the verdict "bad" would teach the model their errors, so they are left out by
+  // default.
   words.insert(words.end(), {"--where", wanted.where.empty() ? "verdict <> 'bad'" : wanted.where});
   const Ended ended = KA_TRY(run_own_process(words));
   if (ended.code == 0) return {};
-  std::string why = ended.complaint;  // "kinalign dataset windows: ..."
-  // The error of the child begins with its own name, which would confuse users of `train` and
-  // `eval`.
+  std::string why = ended.complaint;  // begins with "kinalign dataset windows: "
+  // Users of `train` and `eval` did not call `kinalign dataset windows`, so this name is removed
+  // from the error.
   if (const auto end = why.find(": "); end != std::string::npos) why = why.substr(end + 2);
   while (!why.empty() && why.back() == '\n') why.pop_back();
   return Failure(Error{wanted.data, 0, "a data set to cut windows from", why});
@@ -180,7 +184,7 @@ Result<void> train_in(const std::string& folder, Json job, const std::string& mo
   job.update({{"out", model},
               {"log", folder + "/log.csv"},
               {"checkpoint", folder + "/checkpoint.safetensors"},
-              // A checkpoint is left by a training that was stopped. The worker continues from it.
+              // If a training was stopped, it continues from its checkpoint.
               {"resume", true},
               {"threads", call.jobs}});
   const std::string file = folder + "/job.json";
@@ -192,8 +196,8 @@ Result<void> train_in(const std::string& folder, Json job, const std::string& mo
 Result<std::string> trained_model(const TrainingWanted& wanted, Call& call) {
   const std::string model = wanted.folder + "/model.safetensors";
   std::error_code fault;
-  // The name of the folder depends on everything that the model depends on, so an existing model is
-  // the right one.
+  // The folder's name depends on everything that changes the model, so an existing model is the
+  // right one.
   if (std::filesystem::exists(model, fault)) return model;
   Json job = begun_job(wanted, call);
   job["options"]["seed"] = wanted.seed;
@@ -207,7 +211,7 @@ Result<std::vector<std::string>> rows_of_model(const TrainingWanted& wanted,
   KA_TRY(make_folders(wanted.folder));
   Json job = begun_job(wanted, call);
   job["evaluate"] = model;
-  // The job has another name than that of the training, which is kept.
+  // The job of the training is kept, so this job gets another file name.
   const std::string file = wanted.folder + "/marks.json";
   KA_TRY(write_whole(call.surroundings.files, file, job.dump(1), Overwrite::yes));
   std::vector<std::string> out;

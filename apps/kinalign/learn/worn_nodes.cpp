@@ -18,16 +18,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double longest_lost_s = 2.0;  // a node lost for longer gets a warning
-// A node at rest measures gravity only. Calibration takes gravity out; the norm of the rest is
-// compared with this limit.
-constexpr double most_left_m_s2 = 3.0;  // left of a resting node's acceleration
-/// A sample repeated for longer gives a warning.
+constexpr double longest_lost_s = 2.0;  // a node that is lost for longer gets a warning
+// A node at rest measures only gravity, which calibration removes. If more than this remains, there
+// is a warning.
+constexpr double most_left_m_s2 = 3.0;  // m/s2
+/// A node that repeats one sample for a longer time gets a warning.
 constexpr double longest_frozen_s = 1.0;
-/// A node tilted by more is surely not worn as docs/pose.md says.
+/// A node with a larger tilt is surely not worn as docs/pose.md describes.
 constexpr double sure_tilt_deg = 60.0;
 
-/// "START,END" in seconds; absent if the text is empty.
+/// Parses "START,END" in seconds. Empty if the text is empty.
 Result<std::optional<TPoseSeconds>> t_pose_seconds(const std::string& text) {
   if (text.empty()) return std::optional<TPoseSeconds>();
   const std::size_t comma = text.find(',');
@@ -39,26 +39,26 @@ Result<std::optional<TPoseSeconds>> t_pose_seconds(const std::string& text) {
   return Failure(Error{"--tpose", 0, "START,END in seconds, such as 1.5,4", shown(text)});
 }
 
-/// The value of --heading; absent: the calibration decides.
+/// The value of --heading. Empty if the calibration shall decide.
 std::optional<Headings> headings_of(const WornWords& o) {
   if (o.headings == "shared") return Headings::shared;
   return o.headings == "mounting" ? std::optional(Headings::mounting) : std::nullopt;
 }
 
-/// The frames of the T-pose: the wanted seconds, else the first second in which no node turns.
-/// The T-pose is a stretch of frames in which the person stands still with the arms to the sides.
-/// It fixes how each node lies on its bone.
+/// The frames of the T-pose, in which the person stands still with the arms to the sides. It shows
+/// how each node lies on its bone. If the user does not state the seconds, the first second in
+/// which no node turns is used.
 Result<ChosenTPose> choose_t_pose(const std::string& wanted, const WornFrames& worn,
                                   double rate_hz) {
   ChosenTPose out;
   if (const auto seconds = KA_TRY(t_pose_seconds(wanted))) {
     const double frames = static_cast<double>(worn.frames());
-    // The ends are rounded inwards, so that no frame lies outside of the stated seconds.
+    // The ends are rounded inwards, so that all frames are within the stated seconds.
     out.frames.first =
         static_cast<std::size_t>(std::min(std::ceil(seconds->from * rate_hz), frames));
     const auto end =
         static_cast<std::size_t>(std::min(std::floor(seconds->to * rate_hz) + 1.0, frames));
-    // A stretch beyond the data has no frame. The error states how long the data is.
+    // If the seconds are after the end of the data, the error states how long the data is.
     if (end <= out.frames.first) {
       return Failure(Error{"--tpose", 0,
                            fmt::format("seconds within 0 to {:.1f}", frames / rate_hz),
@@ -78,13 +78,13 @@ Result<ChosenTPose> choose_t_pose(const std::string& wanted, const WornFrames& w
   return out;
 }
 
-/// The share of frames in which a node is valid, and its longest loss, s.
+/// The share of frames in which a node has a sample, and its longest loss, s.
 struct NodePresence {
   double valid = 0.0, longest_lost_s = 0.0;
 };
 
-/// Counts the frames in which the node is valid.
-/// Frames are those of the grid. The longest run of invalid ones is the longest loss.
+/// Counts the frames in which a node has a sample. The longest run of frames without one is its
+/// longest loss.
 NodePresence presence_of(const NodeFrames& nodes, std::size_t node, double rate_hz) {
   std::size_t run = 0, longest = 0, valid = 0;
   for (std::size_t t = 0; t < nodes.frames(); ++t) {
@@ -97,9 +97,8 @@ NodePresence presence_of(const NodeFrames& nodes, std::size_t node, double rate_
           static_cast<double>(longest) / rate_hz};
 }
 
-/// The most serious warning about a node; empty if there is none.
-/// The order is from "no data" to "worn in another way". Only the first warning that applies is
-/// returned.
+/// The most serious warning about a node. Empty if there is none. The possible warnings are tested
+/// from "no samples" to "worn in another way".
 std::string warning_of(const PosedNodes& posed, const PoseLayout& layout, std::size_t node,
                        const NodePresence& presence) {
   const std::string& name = layout.nodes[node];
@@ -107,7 +106,7 @@ std::string warning_of(const PosedNodes& posed, const PoseLayout& layout, std::s
   const std::string missing =
       missing_warning(name, presence.valid > 0.0, worn.has_value(), presence.longest_lost_s);
   if (!missing.empty()) return missing;
-  // If nodes are not worn as described, their tilt is found by calibration and says nothing about a
+  // If nodes are not worn as described, calibration finds their tilt, so a large tilt is no
   // mistake.
   const bool is_checked =
       posed.calibration.worn_as_described || posed.calibration.headings == Headings::mounting;
@@ -122,9 +121,8 @@ std::string warning_of(const PosedNodes& posed, const PoseLayout& layout, std::s
                      worn->tilt_deg);
 }
 
-/// The longest time for which a node repeats one sample, s.
-/// A node that sends its last sample again and again seems alive. Equal numbers in every digit do
-/// not occur otherwise.
+/// The longest time for which a node repeats one sample, s. A broken node may send its last sample
+/// again and again. Real samples never have the same digits several times.
 double frozen_s(const NodeTrack& track) {
   std::int64_t longest = 0;
   std::size_t first = 0;
@@ -134,16 +132,15 @@ double frozen_s(const NodeTrack& track) {
                       now - static_cast<std::ptrdiff_t>(width));
   };
   for (std::size_t i = 1; i < track.stamps.size(); ++i) {
-    // `first` is the first sample of the present run of equal ones.
+    // `first` is the index of the first of the present equal samples.
     if (!is_same(track.orientation, 4, i) || !is_same(track.acceleration, 3, i)) first = i;
     longest = std::max(longest, to_ns(track.stamps[i]) - to_ns(track.stamps[first]));
   }
   return 1e-9 * static_cast<double>(longest);
 }
 
-/// The time, s, at the start or the end of a stream in which other nodes send and the root's node
-/// does not.
-/// The root's node is the last of the layout. Without it no other node can be placed.
+/// The time, s, at the start or end of a stream in which other nodes send and the root's node does
+/// not. The root's node is the last of the tracks. The pose can't be computed without it.
 double lost_with_root_s(const std::vector<NodeTrack>& tracks) {
   std::int64_t out = 0;
   const auto& root = tracks.back().stamps;
@@ -155,10 +152,9 @@ double lost_with_root_s(const std::vector<NodeTrack>& tracks) {
   return 1e-9 * static_cast<double>(out);
 }
 
-/// Warnings about samples that repeat and, if the root's node bounds the frames, about times
-/// without it.
-/// A grid from outside (a Kinect's) goes on without the root's node, so the second warning would be
-/// wrong there.
+/// Warnings about repeated samples and about times without the root's node. The second warning is
+/// given only if the frames begin and end with the root's node (`root_bounds`). Frames with a
+/// Kinect go on without this node.
 std::vector<std::string> sample_warnings(const PoseLayout& layout,
                                          const std::vector<NodeTrack>& tracks, bool root_bounds) {
   std::vector<std::string> out;
@@ -177,7 +173,7 @@ std::vector<std::string> sample_warnings(const PoseLayout& layout,
   return out;
 }
 
-/// Nodes whose accelerations at rest are not those of gravity: "waist: 8.8, wrist_left: 8.9".
+/// The nodes whose acceleration at rest is not gravity: "waist: 8.8, wrist_left: 8.9".
 std::string restless_nodes(const PoseLayout& layout, const NodeCalibration& calibration) {
   std::string out;
   for (std::size_t n = 0; n < layout.nodes.size(); ++n) {
@@ -188,15 +184,14 @@ std::string restless_nodes(const PoseLayout& layout, const NodeCalibration& cali
   return out;
 }
 
-/// Warnings about nodes that are worn in each other's place, and about headings that are not
-/// shared. `headings`: the value of --heading.
-/// Two nodes that were swapped both tilt far, while the others fit. Two arms alone may simply have
-/// hung down.
+/// Warnings about nodes that were exchanged, and about headings that are not shared. `headings`:
+/// the value of --heading. If two nodes were exchanged, both tilt far and the others fit. If only
+/// the arms tilt, they may have hung down.
 std::vector<std::string> warnings_of(const PoseLayout& layout, const NodeCalibration& calibration,
                                      const std::string& headings) {
   std::string names, tilts;
   std::size_t as_described = 0, off = 0;
-  bool arms_alone = true;  // hanging arms tilt in the same way
+  bool arms_alone = true;  // hanging arms tilt like exchanged nodes
   for (std::size_t n = 0; n < layout.nodes.size(); ++n) {
     const auto& worn = calibration.nodes[n];
     if (worn && worn->tilt_deg <= most_tilt_deg) ++as_described;
@@ -212,7 +207,8 @@ std::vector<std::string> warnings_of(const PoseLayout& layout, const NodeCalibra
                   " m/s2 in the T-pose are not gravity: the unit of the accelerations, gravity in "
                   "them, or the order of the quaternion's numbers is wrong");
   }
-  // With --heading shared or mounting, the user has stated how nodes are worn.
+  // --heading shared or mounting states how the nodes are worn, so "auto" is needed for this
+  // warning.
   if (headings == "auto" && as_described >= 2 && off >= 2 && !arms_alone) {
     out.push_back(names + " are worn " + tilts +
                   " deg away from the orientation in docs/pose.md, the others are as described "
@@ -228,17 +224,16 @@ std::vector<std::string> warnings_of(const PoseLayout& layout, const NodeCalibra
   return out;
 }
 
-/// The line says where the headings come from: from each node's mounting, or from one that is
-/// shared.
+/// The printed line about headings: they come from the mounting of each node, or all nodes share
+/// one.
 std::string heading_line(const Json& about) {
   if (about.at("headings") == "mounting") return "one per node, by its mounting";
   return about.at("facing") == "arms" ? "one for all nodes, by the arms coming down"
                                       : "one for all nodes, by their mounting";
 }
 
-/// The printed line about the T-pose: its seconds, the fastest turn and, where they are checked,
-/// the tilts of the forearms.
-/// The forearms are shown because hanging arms are the usual mistake in a T-pose.
+/// The printed line about the T-pose: its seconds and the fastest turn. If tilts are checked, also
+/// the tilts of the forearms, since hanging arms are the usual mistake.
 std::string t_pose_line(const Json& about) {
   const Json& t_pose = about.at("t_pose");
   std::string out = fmt::format("{:.1f} to {:.1f} s{}, no node turned faster than {:.0f} deg/s",
@@ -276,26 +271,26 @@ Result<LiveWornOptions> live_options(const WornWords& o) {
   LiveWornOptions out;
   out.t_pose = KA_TRY(t_pose_seconds(o.t_pose));
   if (out.t_pose && out.t_pose->to > LiveWorn::most_waiting_s) {
-    // A live run keeps the frames before its T-pose for a minute only.
+    // A live run keeps the frames before its T-pose for one minute only.
     return Failure(Error{"--tpose", 0, "a T-pose within the first minute", shown(o.t_pose)});
   }
   out.headings = headings_of(o);
   return out;
 }
 
-/// The root's node is the last of the layout. The others are leaves, of which two are enough for a
+/// The root's node is the last of the layout. Of the other nodes (leaves) two are enough for a
 /// pose.
 Result<NodeChoice> choose(const PoseLayout& layout, const NamedNodes& nodes) {
   NodeChoice out;
   std::size_t leaves = 0;
   for (const std::string& wanted : layout.nodes) {
     out.push_back(node_at(nodes.names, wanted));
-    // Two samples are the least that can be interpolated.
+    // Interpolation needs at least two samples.
     if (out.back() && nodes.tracks[*out.back()].stamps.size() < 2) out.back().reset();
     if (out.back() && wanted != layout.nodes.back()) ++leaves;
   }
   if (out.back() && leaves >= 2) return out;
-  // The error lists both the wanted and the existing nodes, since a wrong name is the usual cause.
+  // A wrong name is the usual cause, so the error lists the wanted and the existing nodes.
   std::string wanted, found;
   for (std::size_t n = 0; n < layout.leaves(); ++n)
     wanted += (n == 0 ? "" : ", ") + layout.nodes[n];
@@ -316,28 +311,29 @@ Result<PosedNodes> calibrated_nodes(const PoseLayout& layout, const Skeleton& bo
   const NodeChoice& choice = out.choice;
   std::vector<NodeTrack> tracks(layout.nodes.size());
   CalibrationOptions options;
-  // options.worn and tracks have one entry for each node of the model, also for absent ones.
+  // Both options.worn and tracks have one element for each node of the model, even if the node is
+  // absent.
   for (std::size_t n = 0; n < choice.size(); ++n) {
     options.worn.emplace_back();
     if (!choice[n]) continue;
     tracks[n] = std::move(nodes.tracks[*choice[n]]);
     options.worn.back() = nodes.worn[*choice[n]];
-    // complete() computes what a track lacks, such as angular velocity from orientations.
+    // complete() computes missing quantities, such as the angular velocity from orientations.
     KA_TRY(complete(tracks[n]));
   }
   const auto warn = [&out](const std::vector<std::string>& more) {
     out.warnings.insert(out.warnings.end(), more.begin(), more.end());
   };
   warn(nodes.warnings);
-  // Samples are judged before they are resampled: on the grid, repeated samples look like real
-  // ones.
+  // Samples are checked before they are resampled, because repeated samples can't be recognised
+  // afterwards.
   warn(sample_warnings(layout, tracks, !span));
   out.even = KA_TRY(even_nodes(tracks, layout.rate_hz, span));
   out.t_pose = KA_TRY(choose_t_pose(o.t_pose, out.even.worn, layout.rate_hz));
   options.t_pose = out.t_pose.frames;
   options.headings = headings_of(o);
   out.calibration = KA_TRY(calibrate(layout, body, out.even.worn, options));
-  // Calibration tells how nodes were worn, so its warnings come last.
+  // The last warnings are about how the nodes are worn, which the calibration has found.
   warn(warnings_of(layout, out.calibration, o.headings));
   return out;
 }
@@ -352,7 +348,7 @@ Json about_nodes(const PoseLayout& layout, const PosedNodes& posed, const NodeFr
   for (std::size_t n = 0; n < layout.nodes.size(); ++n) {
     const NodePresence presence = presence_of(nodes, n, layout.rate_hz);
     const auto& worn = posed.calibration.nodes[n];
-    // "called" is the node's name in the stream; null if the stream lacks it.
+    // "called" is the node's name in the stream; null if the stream has no such node.
     each[layout.nodes[n]] = {{"called", choice[n] ? Json(named.names[*choice[n]]) : Json()},
                              {"valid", presence.valid},
                              {"tilt_deg", worn ? Json(worn->tilt_deg) : Json()}};
@@ -360,7 +356,7 @@ Json about_nodes(const PoseLayout& layout, const PosedNodes& posed, const NodeFr
     const std::string warning = warning_of(posed, layout, n, presence);
     if (!warning.empty()) warnings.push_back(warning);
   }
-  // Warnings of single nodes come first, then those about all of them.
+  // Warnings about single nodes come first, then those about all nodes.
   for (const std::string& warning : posed.warnings) warnings.push_back(warning);
   Json out{{"valid", valid}, {"nodes", std::move(each)}};
   out.update(calibration_json(
