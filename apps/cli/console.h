@@ -129,7 +129,7 @@ class Console {
   bool refused_ = false;
   bool colour_out_ = false, colour_err_ = false, progress_ = false;
   Outlet out_, err_;
-  // the current job, named in the progress line
+  // The current job, which the progress line names.
   std::string doing_;
   std::vector<std::pair<std::string, Colour>> table_;  // the lines of the last show()
   std::vector<std::size_t> standing_;  // the width of each line on the terminal: table or progress

@@ -65,7 +65,7 @@ std::size_t places(std::string_view text) {
   for (const char c : text) {
     // Colours are the only escape sequences in these texts. Each ends with an m.
     if (c == '\x1b') colour = true;
-    // not the first byte of a UTF-8 character
+    // True for a byte within a UTF-8 character, after its first one.
     const bool goes_on = (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
     if (!colour && !goes_on) ++count;
     if (c == 'm') colour = false;

@@ -71,7 +71,7 @@ struct Common {
 
 /// The parts of the operating system that the program uses. A test gives its own parts.
 struct Surroundings {
-  // the value of an environment variable; empty: not set
+  // Returns the value of an environment variable. Empty if the variable is not set.
   std::function<std::string(const std::string&)> variable;
   std::string folder;  // the current folder, absolute
   int out = 1, err = 2;

@@ -47,7 +47,7 @@ Result<CleaningData> open_cleaning(const CleaningOptions& o, Call& call);
 /// data.tested.
 struct CleanedTakes {
   std::string method;
-  // for each stretch [frame, joint, 3] m, not steadied
+  // The answers to each stretch: arrays [frame, joint, 3] in m, not steadied.
   std::vector<std::vector<float>> answers;
   std::vector<std::array<DenoiseMarks, 2>> marks;  // for each stretch: [0] plain, [1] steadied
 };

@@ -41,7 +41,7 @@ struct ComparedMotion {
   // The truth and each answer have the same frames.
   BodyPlaces truth;
   std::vector<BodyPlaces> answers;
-  // for each frame and point of answers[0], if that is a Kinect: Tracking
+  // If answers[0] is a Kinect: the Tracking of each point in each frame.
   std::vector<std::uint8_t> states;
   std::vector<std::uint8_t> hidden;  // for each frame and point: 1 if hidden from the Kinect
 };

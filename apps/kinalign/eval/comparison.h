@@ -56,7 +56,7 @@ struct Comparison {
   // windows.
   std::vector<FoldTake> takes;
   std::vector<MarkColumn> columns;
-  // columns of a second table, one for each joint; empty: no such table
+  // The columns of a second table, one for each joint. Empty if there is no such table.
   std::vector<MarkColumn> joints{};
   /// "people" if each value of a row belongs to one person. "folds" if each value belongs to one
   /// fold; with a single fold the values belong to people.

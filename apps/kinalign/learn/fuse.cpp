@@ -22,9 +22,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// standard deviation of a node's heading; above it there is a warning
+// A heading of a node with a larger standard deviation gives a warning.
 constexpr double most_unsure_deg = 10.0;
-// correction of a heading by the Kinect; a larger one means that the node is worn elsewhere
+// If the Kinect corrects a heading by more, the node is worn elsewhere.
 constexpr double most_turned_deg = 40.0;
 
 /// The options of `kinalign fuse`. `kinect` and `nodes` are names of streams.

@@ -13,7 +13,7 @@ namespace kinalign {
 
 namespace {
 
-// of all nodes together; the limit protects the memory
+// The largest number of samples of all nodes together. The limit protects the memory.
 constexpr std::size_t most_samples = std::size_t{1} << 26U;
 constexpr std::string_view nodes_kind = "inertial nodes";
 

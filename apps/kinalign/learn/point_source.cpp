@@ -16,7 +16,7 @@ namespace kinalign {
 
 namespace {
 
-// frames x joints; the limit protects the memory
+// The largest number of frames times joints. The limit protects the memory.
 constexpr std::size_t most_values = std::size_t{1} << 29U;
 constexpr std::string_view joints_kind = "joints";
 

@@ -131,7 +131,7 @@ Json job_of(const Train& o, const std::string& windows, const std::string& hash,
   if (o.vary_speed > 0.0) job["vary_speed"] = o.vary_speed;
   if (o.vary_size > 0.0) job["vary_size"] = o.vary_size;
   if (!from_hash.empty()) job["from_sha256"] = from_hash;
-  job["identity"] = sha256_of(job.dump() + hash);  // does not depend on the folders of the files
+  job["identity"] = sha256_of(job.dump() + hash);  // the same in all folders
   // The members below do not belong to the identity: they say where files are and how to run.
   if (!o.from.empty()) job["from"] = o.from;
   job["windows"] = windows;

@@ -149,7 +149,7 @@ class Workers {
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::seconds grace{3};
-  // exit code of kinalign-learn if it has lost another process
+  // The exit code of kinalign-learn if it has lost another process.
   static constexpr int lost_another = 4;
 
   /// Reads the output of all running children, for at most 200 ms. Returns false if all have ended.

@@ -180,7 +180,7 @@ class LiveDenoiseRun {
   LiveChoice stream_;
   LiveJoints joints_;
   LiveCleaner cleaner_;
-  // the number of frames given to the cleaner, and of those that it has answered
+  // The number of frames given to the cleaner, and of those that it has answered.
   std::size_t made_ = 0, answered_ = 0;
   std::size_t behind_newest_ = 0;      // frames made after the Kinect's newest row
   std::array<std::size_t, 3> seen_{};  // number of joints in all frames, by Tracking

@@ -138,7 +138,7 @@ void add_device(const DeviceOptions& options, const LabStatus& status, std::vect
   add_losses(options.name, status, rows);
 }
 
-// the width of each column; 0: the column is left out
+// The width of each column. A column of width 0 is left out.
 using Widths = std::array<std::size_t, columns>;
 
 /// True if no sender has a row. The table then needs no heads of columns.

@@ -10,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-// bytes; also the limit of a mark that a program sends (docs/formats/marks.md)
+// The largest length of a text in bytes, also in marks that programs send (docs/formats/marks.md).
 constexpr std::size_t most_text = 500;
 constexpr char escape = 0x1b, backspace = 0x08, del = 0x7f;
 

@@ -71,7 +71,7 @@ Usage describe_record(RecordJob& o) {
 /// datagram on its way to the file. Must be called before other threads begin. With one arena
 /// (mallopt(3)), memory that one thread frees can be used by the others.
 void keep_memory(std::size_t bytes) {
-  // the largest value that glibc accepts; blocks below it come from the heap
+  // The largest value that glibc accepts. Smaller blocks of memory come from the heap.
   constexpr int largest_mapped = 32 << 20;
   mallopt(M_ARENA_MAX, 1);
   // A threshold that is set by hand also stops glibc from adjusting it.

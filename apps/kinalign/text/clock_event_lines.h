@@ -41,7 +41,7 @@ class ClockEventLines {
  private:
   struct Clock {
     std::uint32_t node_id = 0;
-    // the last three steps
+    // The times of the last three steps.
     std::array<HostTime, 3> steps{HostTime::min(), HostTime::min(), HostTime::min()};
     bool contradicts = false;
     HostTime troubled = HostTime::min();   // the time of the latest event of trouble

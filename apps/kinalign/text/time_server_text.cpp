@@ -84,7 +84,7 @@ std::string clock_text(const NtpServerState& state) {
     return fmt::format("not synchronised: this machine is the reference, stratum {}{}",
                        state.stratum, leap);
   }
-  // the "root distance" of RFC 5905
+  // RFC 5905 calls this sum the "root distance".
   const Duration most = state.root_dispersion + state.root_delay / 2;
   const double ms = 1e3 * seconds(most);
   // Errors below 0.1 ms are shown in microseconds.

@@ -77,7 +77,7 @@ Result<void> check_flags(const TimeServerFlags& o, const Sources& given) {
   // A wrong address is wrong use. Both calls report it before any socket is opened.
   KA_TRY(addresses_of(o.listen));
   KA_TRY(networks_of(o.exempt));
-  // an empty text comes from a shell variable that is not set
+  // An empty text comes from a shell variable that is not set; it must not mean "no key".
   if (given.contains("lab_key") && o.lab_key.empty()) {
     return Failure(Error{"--lab-key", 0, "a file's name", "nothing"});
   }
