@@ -108,7 +108,7 @@ struct Page {
   std::string summary;            // one line, for the list of verbs
   std::string text;               // the rest of the page's text; may be empty
   std::vector<Example> examples;  // the first one opens the help page
-  // those of out, force, json, dry_run and jobs that the verb takes
+  // The flags among out, force, json, dry_run and jobs that the verb takes.
   std::vector<std::string> common;
   bool out_is_folder = false;
   bool out_is_new = false;  // the folder must not exist yet

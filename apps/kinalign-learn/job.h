@@ -28,7 +28,7 @@ struct TrainingJob {
   std::string bodies;
   std::string out;   // path of the model's file
   std::string from;  // path of a model whose training is continued; empty: random weights
-  // path of a CSV file; a curve and events are written beside it; empty: none
+  // Path of a CSV file. A curve and events are written beside it. Empty: no log.
   std::string log;
   std::string checkpoint;         // path of a file written during the training; empty: none
   std::int64_t keep_every = 200;  // training steps between two checkpoints

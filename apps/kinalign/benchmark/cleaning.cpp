@@ -105,9 +105,9 @@ Result<std::string> trained_method(const CleaningOptions& o, const CleaningData&
   return file;
 }
 
-/// Returns the function that answers for a method. A network is trained by kinalign-learn and
-/// answers through its model's file. All other methods are fitted to the training takes in this
-/// process.
+/// Returns a method as a function from the joints of a Kinect to cleaned joints. kinalign-learn
+/// trains networks, and their answers come from the model's file. All other methods are fitted to
+/// the training takes in this process.
 Result<Answer> answer_for(const CleaningOptions& o, const CleaningData& data,
                           const std::string& method, Call& call) {
   if (is_trained(method)) {

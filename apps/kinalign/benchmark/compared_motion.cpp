@@ -31,7 +31,7 @@ namespace {
 // Nose and crown show in which direction the head looks, which the position of its joint does not.
 // A Kinect has no such joints.
 constexpr float nose_m = 0.14F, crown_m = 0.16F;  // distances from the head's joint
-// time for which a limb is hidden, and the pause between two limbs
+// The time for which a limb is hidden, and the pause between two limbs.
 constexpr double hidden_s = 3.0;
 /// Samples of a Kinect that are further apart are not interpolated.
 constexpr double kinect_gap_s = 0.2;

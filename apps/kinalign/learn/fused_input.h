@@ -30,7 +30,7 @@ struct FusedInput {
   NamedNodes nodes;    // names only; the tracks are empty
   PosedNodes posed;
   Skeleton body;  // the model's body, scaled to the legs that the Kinect sees
-  // false: the Kinect saw too little of the legs, so `body` has the model's size
+  // False if the Kinect saw too little of the legs; `body` then has the model's size.
   bool is_sized = true;
   std::vector<std::string> warnings{};  // about the Kinect's stream
 };

@@ -117,7 +117,7 @@ Result<void> read_clip(const TimeModel& clock, const ClipInput& input, NamedPoin
     for (Time& stamp : stamps) stamp = take_time(clock, stamp);
     const ClipRows rows = own_rows(input.skeleton, std::move(block));
     KA_TRY(append(out, stamps, rows.positions, all_tracked(stamps.size(), out.joints.size(), {})));
-    // The block was moved away, so the next turn begins with an empty one.
+    // The rows were moved out of the block, so the next turn of the loop gets an empty one.
     block = {};
   }
   return {};

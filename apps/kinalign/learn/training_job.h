@@ -66,11 +66,11 @@ struct TrainingWanted {
   std::string method, windows, input, truth;
   std::vector<std::string> nodes{};             // empty: the method's default
   std::vector<std::string> learnt{}, judged{};  // names of takes
-  // for job, log and model; an existing model is used again
+  // The folder for job, log and model. An existing model is used again.
   std::string folder{};
   std::string device;                // "cpu" or "cuda"
   std::int64_t seed = 1, steps = 0;  // steps 0: the method's default
-  // weight of the hands in the loss; 0: the method's own
+  // The weight of the hands in the loss. 0: the method's own.
   double hand_weight = 0.0;
 };
 /// The file of the trained model. If it does not exist, the model is trained, or its stopped

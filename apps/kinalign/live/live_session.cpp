@@ -77,7 +77,7 @@ Failure no_live_frames(const std::string& waited_for) {
 Result<LiveSession> LiveSession::open(const LiveWords& words, Call& call) {
   // If a viewer stops reading, the run goes on.
   call.console.never_wait();
-  (void)call.console.progress();  // from here on Ctrl-C does not end the program
+  (void)call.console.progress();  // starts the clock of the progress line
   std::optional<LiveDatagrams> datagrams;
   if (!words.send.empty()) {
     datagrams = KA_TRY(LiveDatagrams::open(KA_TRY(parse_endpoint(words.send, "--send"))));

@@ -18,10 +18,10 @@ struct TableLine {
   bool head = false;
 };
 
-/// Makes the table: a head, and a line for each sender, each device that has sent nothing, and each
-/// port that lost data. Columns without a value are left out. If lines are wider than `width`
-/// columns of the terminal, the rightmost columns are left out, too. A line may still be wider
-/// after that.
+/// Makes the table: a line for each sender, each device that has sent nothing, and each port that
+/// lost data. If there are columns besides the device, a line with their heads comes first. Columns
+/// without a value are left out. If lines are wider than `width` columns of the terminal, the
+/// rightmost columns are left out, too. A line may still be wider after that.
 std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status, std::size_t width);
 
 /// Shortens the table to `rows` lines: lines with faults come first, and the last line states the

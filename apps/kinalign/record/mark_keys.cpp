@@ -35,7 +35,8 @@ std::optional<Mark::Kind> kind_of(char key) {
 
 }  // namespace
 
-/// By ECMA-48 such a key sends Esc [, bytes below 0x40 and a last byte, or Esc O and one byte.
+/// By ECMA-48 an arrow key, for example, sends Esc [, bytes below 0x40 and a last byte. Other keys
+/// send Esc O and one byte.
 std::string single_keys(std::string_view sent) {
   std::string keys;
   for (std::size_t i = 0; i < sent.size(); ++i) {

@@ -108,7 +108,7 @@ Result<int> run(RecordJob& o, Call& call) {
   const int code = RecordRun(o, call, *session)();
   // Live clients get the end of the stream after the last take is on the disk.
   session->end_live();
-  take_signals();  // from here on a signal ends the program at once
+  take_signals();  // from here on a second signal ends the program
   return code;
 }
 

@@ -274,7 +274,7 @@ std::string RecordPrinter::disk_line() const {
   if (session_.takes().empty()) return "waiting for a start";
   const DiskStatus oldest = session_.takes().front()->disk.status();
   if (session_.takes().front()->end && !oldest.finished && !oldest.paths.empty()) {
-    // While the next take is waited for, the end of the last one may still be written.
+    // The oldest take has ended, but its data is still being written to the disk.
     return "disk  writing the end of " + oldest.paths.back();
   }
   const DiskStatus disk = session_.takes().back()->disk.status();

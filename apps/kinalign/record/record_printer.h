@@ -68,7 +68,7 @@ class RecordPrinter {
   NodeNames names_;
   std::weak_ptr<const SessionTake> started_;      // the take whose file was printed last
   std::weak_ptr<const SessionTake> forecast_of_;  // the take of dropped_ and forecast_
-  // the number of lost messages that was printed last
+  // The number of lost messages that was printed last.
   std::uint64_t dropped_ = 0;
   DiskForecast forecast_;
   ClockEventLines clock_lines_;

@@ -19,7 +19,7 @@ namespace kinalign {
 struct RecordStatus {
   LabStatus lab;
   std::optional<DiskStatus> disk;  // empty if no take is being recorded or written
-  // required devices and nodes that are silent now, or at a take's end have never sent
+  // Required devices and nodes that are silent now. At a take's end: those that never sent.
   std::vector<std::string> missing;
 };
 

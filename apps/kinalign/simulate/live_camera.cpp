@@ -18,7 +18,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Duration hello_period = 1s, ping_period = 200ms;  // docs/formats/kinect_stream.md
-// above 2^53, like the ids of the SDK
+// The id of the body. It is above 2^53, like the ids from the Kinect's SDK.
 constexpr std::uint64_t body_id = 72'057'594'037'927'936 + 1;
 
 /// The body that the sensor saw in a frame. Empty if no joint was found.

@@ -114,7 +114,8 @@ double LiveRehearsal::run(const std::function<bool()>& go_on) {
 
 /// Waits until the time `until` or until a datagram arrives.
 void LiveRehearsal::wait(HostTime until) const {
-  // Datagrams to the suit and to the clicks are not urgent, so their sockets do not end the wait.
+  // Answers to the suit and to the user's clicks are not urgent, so their sockets do not end the
+  // wait.
   std::vector<pollfd> received{{camera_->fd(), POLLIN, 0}};
   for (const auto& node : nodes_) received.push_back({node->fd(), POLLIN, 0});
   const Duration left = std::max(until - clock_->raw(), Duration::zero());

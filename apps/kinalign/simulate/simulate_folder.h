@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes a rehearsal into a folder: the devices' files, the manifest for `align`, and the truth.
+// Writes a rehearsal (a simulated recording session) into a folder: the devices' files, the
+// manifest for `align`, and the truth.
 #pragma once
 
 #include "apps/kinalign/simulate/live_rehearsal.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texts of `simulate` about a rehearsal: lines for people, JSON objects for programs.
+// Texts of `simulate` about a rehearsal (a simulated recording session): lines for people, JSON
+// objects for programs.
 #pragma once
 
 #include "apps/cli/console.h"
