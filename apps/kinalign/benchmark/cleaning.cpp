@@ -172,11 +172,12 @@ constexpr std::array<MarksColumn, 9> marks_columns{
 
 using PersonMarks = std::array<std::optional<double>, marks_columns.size()>;
 
-/// The mean marks over one person's stretches. The paper's marks are means over frames.
+/// The mean marks over one person's stretches.
 PersonMarks marks_of_person(const CleaningData& data, const CleanedTakes& method,
                             const std::string& person, std::size_t which) {
   std::vector<ProtocolMarks> protocol;
-  // The paper's marks are means over frames, so a long stretch has more weight than a short one.
+  // The three marks of the HFUT-MMD paper are means over frames, so a long stretch has more weight
+  // than a short one.
   std::array<double, 3> sums{};
   double frames = 0.0;
   for (std::size_t i = 0; i < data.tested.size(); ++i) {

@@ -75,8 +75,8 @@ Table marks_table(const CleaningData& data, const std::vector<CleanedTakes>& all
 /// The same table for people: each cell has both numbers, such as "3.42 ± 1.05".
 Table with_joined_deviations(const Table& table);
 
-/// The error of one method over a stretch: for each frame the mean distance to the truth over the
-/// joints that a Kinect and the truth share, cm. 0 if no joint is valid.
+/// The error of one method in each frame of a stretch, cm. The error is the mean distance to the
+/// truth over the joints that a Kinect and the truth share. 0 if no joint is valid.
 std::vector<float> errors_over_time(const CleaningData& data, const Pair& pair,
                                     const std::vector<float>& answer);
 

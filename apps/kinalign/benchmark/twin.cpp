@@ -276,7 +276,7 @@ void add_row(const std::string& name, const std::vector<ModalityFrames>& values,
   table.rows.push_back(std::move(row));
 }
 
-/// The ids of the people in one row of the paper's table 6, as that table writes them.
+/// The ids of the people in one row of table 6 in the HFUT-MMD paper, as that table writes them.
 std::string ids_of(const PaperPeople& people) {
   return fmt::format(
       "{}", fmt::join(people.ids.begin(),
@@ -287,7 +287,7 @@ std::string ids_of(const PaperPeople& people) {
 /// devices. Each table compares the paper, the plan and the takes made, because a small plan can't
 /// meet the paper's numbers exactly.
 std::vector<Table> twin_tables(double scale, const TwinCounts& made) {
-  // With a scale of 1 paper_counts() returns the numbers of the paper.
+  // With a scale of 1 paper_counts() returns the numbers of the HFUT-MMD paper.
   const TwinCounts paper = paper_counts(1.0), asked = paper_counts(scale);
   Table people = table_with("people", "Frames by people (the paper's table 6)");
   for (std::size_t i = 0; i < paper_people.size(); ++i) {
