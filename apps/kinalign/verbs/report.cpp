@@ -96,7 +96,7 @@ Result<std::string> outline_json(TakeReader& reader, const AlignmentReport& repo
 /// One line of JSON about the page, followed by the page itself.
 Result<std::string> page_text(const std::string& path, TakeReader& reader,
                               const AlignmentReport& report, const TakeFigureOptions& options) {
-  // outline_json() has read the take once before, with another reader.
+  // outline_json() used another reader, so this reader still begins at the first row.
   TakeFigures figures(reader.header(), report, options);
   TakeSlab slab;
   while (KA_TRY(reader.next(slab))) figures.add(slab);

@@ -223,8 +223,9 @@ NodeVerdict NodeResponder::take_session(NodeSession& session, const NodeSign& si
   session.last_arrival = sign.at;
   if (session.state == State::live) return NodeVerdict::accepted;
   if (session.state == State::earlier) {
-    // Either the datagram was sent before its node started again, or another node has the same id.
-    // Only another node can have received an answer that was sent after the restart.
+    // The node id has a newer session. Either the datagram was sent before the node started again,
+    // or another node has the same id. A restarted node has a new boot id, so a datagram of this
+    // session that names a later answer comes from another node.
     if (!echoed || *echoed <= session.replaced) return NodeVerdict::earlier_session;
     return table_.part(session, sign.at) ? NodeVerdict::accepted : NodeVerdict::no_room;
   }

@@ -13,8 +13,8 @@
 
 namespace kinalign {
 
-/// step() takes each frame of the grid in order; finish() is called at the end, until it is empty.
-/// `window_` and the rows of both `Seen` always begin with the same frame.
+/// The caller passes the frames, resampled to the model's rate, to step() in order. After the last
+/// frame the caller calls finish() until it returns no joints.
 class LiveCleaner {
  public:
   /// Bone lengths are medians over this many frames: 10 s at 30 Hz.
@@ -52,7 +52,7 @@ class LiveCleaner {
   /// Number of later and of earlier frames in the window, seen from the answered frame.
   std::size_t ahead_, behind_;
   std::vector<std::size_t> inputs_, outputs_;  // each joint's partner on the other side
-  JointFrames window_;
+  JointFrames window_;  // begins with the same frame as the rows of plain_ and mirrored_
   Seen plain_, mirrored_;
   std::size_t next_ = 0;        // the row of the window that is answered next
   std::vector<float> answers_;  // all joints so far, before bones get constant lengths
