@@ -136,6 +136,18 @@ Result<void> check_method(const SpacePlan& plan, const TakeHeader& header,
   return {};
 }
 
+/// "1 (SpineBase on Hips)": the pairs that were found, for a message.
+std::string pairs_text(const TakeGroup& from, const TakeGroup& onto,
+                       const std::vector<JointPair>& pairs) {
+  if (pairs.empty()) return "none";
+  std::string names;
+  for (const JointPair& pair : pairs) {
+    names += (names.empty() ? "" : ", ") + shown((*joint_names(from))[pair.from]) + " on " +
+             shown((*joint_names(onto))[pair.onto]);
+  }
+  return std::to_string(pairs.size()) + " (" + names + ")";
+}
+
 /// Finds the pairs of joints of a space. For the method "paper" it also finds the two root joints.
 Result<void> find_joints(const TakeHeader& header, SpacePlan& plan) {
   const TakeGroup &from = header.groups[plan.group], &onto = header.groups[plan.onto];
@@ -148,8 +160,8 @@ Result<void> find_joints(const TakeHeader& header, SpacePlan& plan) {
   // A rigid transform is determined by three points that are not on a line.
   if (plan.options.method == "fit" && plan.pairs.size() < 3) {
     return Failure(Error{"", line_of(plan.options.lines, "joints"),
-                         "at least three named joints for a fit (joints = { ... })",
-                         std::to_string(plan.pairs.size()), ErrorKind::too_few_joints});
+                         "at least three pairs of joints for a fit (joints = { ... })",
+                         pairs_text(from, onto, plan.pairs), ErrorKind::too_few_joints});
   }
   return {};
 }
@@ -192,8 +204,9 @@ Quat turn_about_y(double degrees) {
 }
 
 std::vector<std::pair<std::string_view, std::string_view>> usual_pairs() {
-  // Joints at the same place in both skeletons (Kinect v2; Perception Neuron). The last lines are
-  // segments of Xsens MVN; a segment has the place of the joint at which it begins.
+  // Joints at the same place in both skeletons: Kinect v2 and Perception Neuron; then segments of
+  // Xsens MVN, which have the place of the joint at which they begin; then skeletons whose joints
+  // have the names of joints.
   return {{"SpineBase", "Hips"},
           {"ShoulderLeft", "LeftArm"},
           {"ElbowLeft", "LeftForeArm"},
@@ -213,7 +226,17 @@ std::vector<std::pair<std::string_view, std::string_view>> usual_pairs() {
           {"HipLeft", "LeftUpperLeg"},
           {"HipRight", "RightUpperLeg"},
           {"KneeLeft", "LeftLowerLeg"},
-          {"KneeRight", "RightLowerLeg"}};
+          {"KneeRight", "RightLowerLeg"},
+          {"ElbowLeft", "LeftElbow"},
+          {"WristLeft", "LeftWrist"},
+          {"HipLeft", "LeftHip"},
+          {"KneeLeft", "LeftKnee"},
+          {"AnkleLeft", "LeftAnkle"},
+          {"ElbowRight", "RightElbow"},
+          {"WristRight", "RightWrist"},
+          {"HipRight", "RightHip"},
+          {"KneeRight", "RightKnee"},
+          {"AnkleRight", "RightAnkle"}};
 }
 
 /// Plans the spaces in the order of the stream names. Streams with the method "none" keep their own

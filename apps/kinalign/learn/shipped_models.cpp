@@ -21,7 +21,9 @@ Result<std::string> shipped_model(const std::string& name) {
     std::error_code fault;
     if (std::filesystem::exists(file, fault)) return file.string();
   }
-  return Failure(Error{"--model", 0, "a model's file, because no model is installed", "none"});
+  const std::string installed = (own / "../share/kinalign/models").lexically_normal().string();
+  return Failure(Error{"--model", 0,
+                       "a model's file, because no model " + name + " is in " + installed, "none"});
 }
 
 Result<std::string> model_named(const std::string& given, const std::string& usual) {

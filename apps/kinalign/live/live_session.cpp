@@ -71,7 +71,7 @@ Result<void> check_live_frames(std::size_t frames) {
 
 Failure no_live_frames(const std::string& waited_for) {
   return Failure(
-      Error{"--live", 0, "frames to compute", "no frame; the program ended " + waited_for});
+      Error{"--live", 0, "frames to compute", "none; the data ended while " + waited_for});
 }
 
 Result<LiveSession> LiveSession::open(const LiveWords& words, Call& call) {

@@ -160,7 +160,7 @@ std::string LiveWornReport::waits_for() const {
   // Before the root's node has sent a sample, begin() is empty.
   if (!worn_->nodes().begin()) return "waiting for the nodes: " + names_.text();
   if (worn_->calibration()) return "";
-  return fmt::format("waiting for a T-pose without motion ({}){}", names_.text(),
+  return fmt::format("waiting for a T-pose that is held still for a second ({}){}", names_.text(),
                      refusal_.empty() ? "" : "; " + refusal_);
 }
 
