@@ -5,6 +5,7 @@
 #include "kinalign/wire/little_endian_reader.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace kinalign {
 
@@ -14,6 +15,30 @@ constexpr std::size_t most_findings = 200;
 
 // The size of a chunk's head with the name "zstd", the longest name that find_chunk() accepts.
 constexpr std::size_t longest_chunk_head = mcap_record_head + McapChunkView::fields + 4;
+
+// Bytes that may follow the known fields of a record. Files that were seen have at most 3.
+constexpr std::size_t most_surplus = 64;
+
+/// Decodes the chunk at the beginning of `bytes` if its fields are plausible. Opcode and length in
+/// front of a chunk have no checksum, so they count only if the chunk has none either. `most`: the
+/// limit on the sizes of the chunk, bytes.
+std::optional<McapChunkView> plausible_chunk(std::string_view bytes, std::uint64_t most) {
+  constexpr std::size_t crc_at = mcap_record_head + 8 + 8 + 8, name_at = crc_at + 4;
+  if (bytes.size() < mcap_record_head + McapChunkView::fields) return std::nullopt;
+  // These tests take little time, and few positions pass them.
+  const bool has_opcode = static_cast<McapOp>(bytes.front()) == McapOp::chunk;
+  if (little_at<std::uint32_t>(octets(bytes), name_at) > 4) return std::nullopt;
+  if (!has_opcode && little_at<std::uint32_t>(octets(bytes), crc_at) == 0) return std::nullopt;
+  const auto chunk = decode_mcap_chunk(bytes.substr(mcap_record_head));
+  if (!chunk) return std::nullopt;
+  const McapChunkHead& head = chunk->head;
+  const bool fits = chunk->stored_size <= most && head.uncompressed_size <= most;
+  const bool has_head = has_opcode && decode_mcap_head(bytes)->length == chunk->size();
+  const bool has_name = head.compression == "zstd" ||
+                        (head.compression.empty() && head.uncompressed_size == chunk->stored_size);
+  const bool has_fields = head.uncompressed_crc != 0 && head.uncompressed_size > 0 && has_name;
+  return fits && (has_head || has_fields) ? chunk : std::nullopt;
+}
 
 }  // namespace
 
@@ -44,15 +69,14 @@ void McapReader::report(Severity severity, std::string expected, std::string fou
       {severity, {"", 0, std::move(expected), std::move(found)}, std::move(meaning), ""});
 }
 
-/// Reports that no valid record is at this position. Reading continues at the next chunk.
+/// Reports that no valid record is at this position. Reading continues at the next chunk, which may
+/// be at this position if only its opcode or length is damaged.
 void McapReader::report_damage(std::string expected, std::string found) {
   report(Severity::error, std::move(expected), std::move(found),
          "what stands there is left out, up to the next whole chunk");
   state_ = State::lost;
   // The checksum of the section can't be compared any more, because bytes are skipped.
   crc_counts_ = false;
-  // Skipping one byte is enough, because find_chunk() tries every later position.
-  skip(1);
 }
 
 std::optional<McapRecord> McapReader::next() {
@@ -71,7 +95,9 @@ std::optional<McapRecord> McapReader::next_in_chunk() {
     // A truncated chunk always ends within a record, so this is not reported.
     if (!whole && in_truncated_chunk_) break;
     std::optional<McapRecord> record;
-    const bool fits = whole && take(head->op, bytes.substr(mcap_record_head, head->length), record);
+    std::size_t surplus = 0;  // allowed, because the chunk's checksum covers the lengths
+    const bool fits =
+        whole && take(head->op, bytes.substr(mcap_record_head, head->length), record, surplus);
     const bool ends = !whole || head->op == McapOp{};  // a power failure may leave zeros
     if (!fits) {
       report(Severity::error, "valid records in the chunk", "a damaged record",
@@ -88,21 +114,27 @@ std::optional<McapRecord> McapReader::next_in_chunk() {
 }
 
 /// Decodes a record. Returns true if the content is valid. `record` stays empty if readers do not
-/// need the record.
-bool McapReader::take(McapOp op, std::string_view content, std::optional<McapRecord>& record) {
+/// need the record. `surplus`: the number of bytes after the known fields.
+bool McapReader::take(McapOp op, std::string_view content, std::optional<McapRecord>& record,
+                      std::size_t& surplus) {
   // kinalign does not use message indexes, but an invalid one shows that the file is damaged.
   if (op == McapOp::message_index) {
-    // Bytes that may follow the known fields. Files that were seen have at most 3.
-    constexpr std::size_t padding = 64;
     LittleEndianReader from(octets(content));
     from.take<std::uint16_t>();
     from.take_bytes(from.take<std::uint32_t>());
-    return from.complete() && from.left() <= padding;
+    surplus = from.left();
+    return from.complete();
   }
   // The specification lets readers skip opcodes that they don't know.
-  if (op > McapOp::data_end) return true;  // unknown opcode
-  record = decode_mcap_record(op, content);
-  return record.has_value();
+  if (op > McapOp::data_end) {
+    surplus = content.size();
+    return true;
+  }
+  record = decode_mcap_record(op, content, &surplus);
+  // These two end a section of the file. Their length never differs, so surplus bytes show that
+  // another record's opcode is damaged.
+  const bool ends = op == McapOp::footer || op == McapOp::data_end;
+  return record.has_value() && (surplus == 0 || !ends);
 }
 
 /// Checks the magic bytes at the beginning of the file.
@@ -127,7 +159,7 @@ void McapReader::start() {
 std::optional<McapRecord> McapReader::next_in_file() {
   for (;;) {
     if (state_ == State::start) start();
-    if (state_ == State::lost) find_chunk();
+    if (state_ == State::lost || state_ == State::surplus) find_chunk();
     if (state_ == State::after_footer) find_magic();
     if (state_ != State::records) return std::nullopt;
     switch (look()) {
@@ -148,6 +180,7 @@ std::optional<McapRecord> McapReader::next_in_file() {
 /// An impossible length is damage. A length beyond the present bytes means that more bytes may be
 /// needed.
 McapReader::Look McapReader::look() {
+  if (found_size_ > 0) return Look::whole;
   const std::string_view bytes = rest();
   const auto head = decode_mcap_head(bytes);
   if (head && head->op == McapOp{}) {
@@ -171,13 +204,17 @@ McapReader::Look McapReader::look() {
 std::optional<McapRecord> McapReader::read_record() {
   // look() has checked that the record is complete.
   record_at_ = offset_;
-  const McapRecordHead head = *decode_mcap_head(rest());
+  McapRecordHead head = *decode_mcap_head(rest());
+  // The head of a chunk that find_chunk() found may be damaged.
+  if (found_size_ > 0) head = {McapOp::chunk, std::exchange(found_size_, 0)};
   const std::string_view whole = rest().substr(0, mcap_record_head + head.length);
   record_size_ = whole.size();
   const std::string_view content = whole.substr(mcap_record_head);
   std::optional<McapRecord> record;
+  std::size_t surplus = 0;
   const bool is_chunk = head.op == McapOp::chunk;
-  if (!(is_chunk ? open_chunk(content) : take(head.op, content, record))) {
+  const bool is_valid = is_chunk ? open_chunk(content) : take(head.op, content, record, surplus);
+  if (!is_valid || (surplus > 0 && is_hidden_chunk(whole))) {
     report_damage("a record with valid fields and checksum", "a damaged record");
     return std::nullopt;
   }
@@ -193,8 +230,34 @@ std::optional<McapRecord> McapReader::read_record() {
     crc_counts_ = true;  // the summary's checksum is valid even if earlier bytes were skipped
   }
   if (head.op == McapOp::footer) state_ = State::after_footer;
-  consume(whole.size());
+  consume(whole.size() - surplus);
+  if (surplus > 0) judge_surplus(head.op, surplus);
   return record;
+}
+
+/// Returns true if the record is a chunk with another opcode.
+bool McapReader::is_hidden_chunk(std::string_view whole) {
+  const auto chunk = plausible_chunk(whole, longest_);
+  return chunk && mcap_record_head + chunk->size() == whole.size() && is_chunk(*chunk);
+}
+
+/// Handles the bytes after the known fields of a record. If the record's length is damaged, they
+/// are the next records of the file.
+void McapReader::judge_surplus(McapOp op, std::size_t surplus) {
+  const bool is_known = op <= McapOp::data_end;
+  if (is_known && surplus > most_surplus) {
+    report(Severity::error, "a record as long as its fields", "a longer record",
+           "what follows its fields is read as the next record");
+    crc_counts_ = false;
+    return;
+  }
+  constexpr auto first_private = static_cast<McapOp>(0x80);  // lower opcodes are MCAP's own
+  if (!is_known && op < first_private) {
+    report(Severity::warning, "a record with a known opcode", "another opcode",
+           "the record is skipped");
+  }
+  surplus_end_ = offset_ + surplus;
+  state_ = State::surplus;
 }
 
 /// Compares the checksum in a data end or footer record with crc_. `bytes`: the whole record. crc_
@@ -249,7 +312,6 @@ void McapReader::end_in_record() {
   // the position of this record.
   const std::size_t taken = taken_;
   const std::uint64_t offset = offset_, skipped_before = skipped_;
-  consume(1);
   state_ = State::lost;
   // The search has all bytes of the file, because end() was called.
   find_chunk();
@@ -280,52 +342,55 @@ void McapReader::end_in_record() {
   consume(bytes.size());
 }
 
-/// Returns true if the bytes are a chunk. Consistent sizes make this likely, and unpacking with the
+/// Returns true if the bytes are a chunk. Plausible fields make this likely, and unpacking with the
 /// checksum proves it. A file may contain many false chunks, so tried_ sums up the work of failed
 /// attempts.
 bool McapReader::is_chunk(const McapChunkView& chunk) {
   constexpr std::uint64_t beginning = std::uint64_t{128} << 10;  // memory for zstd, counted as work
   const bool is = unpack(chunk, longest_).has_value();
-  if (!is) tried_ += beginning + chunk.stored_size + chunk.head.uncompressed_size;
-  return is;
+  if (is) return true;
+  tried_ += chunk.stored_size + chunk.head.uncompressed_size;
+  if (!chunk.head.compression.empty()) tried_ += beginning;
+  return false;
 }
 
-// Searches for the next chunk. A damaged file may contain many false candidates, so the work is
-// limited to most_tried bytes.
+// Searches for the next chunk, in the state surplus only up to surplus_end_. A damaged file may
+// contain many false candidates, so the work is limited to most_tried bytes.
 void McapReader::find_chunk() {
   constexpr std::uint64_t most_tried = std::uint64_t{1} << 30;
-  while (!rest().empty()) {
-    const std::size_t candidate = rest().find(static_cast<char>(McapOp::chunk));
-    skip(std::min(candidate, rest().size()));
+  const bool is_lost = state_ == State::lost;
+  while (!rest().empty() && (is_lost || offset_ < surplus_end_)) {
     const std::string_view bytes = rest();
     // The head of a candidate may not have arrived completely.
     if (bytes.size() < longest_chunk_head && !ended_) return;
-    const auto head = decode_mcap_head(bytes);
-    const auto chunk = head ? decode_mcap_chunk(bytes.substr(mcap_record_head)) : std::nullopt;
-    // These tests take little time, and random bytes rarely pass them.
-    const bool likely = chunk && head->length <= longest_ && tried_ < most_tried &&
-                        chunk->head.uncompressed_size <= longest_ &&
-                        chunk->head.compression.size() <= 4 && head->length == chunk->size();
+    const auto chunk = tried_ < most_tried ? plausible_chunk(bytes, longest_) : std::nullopt;
     // The candidate looks like a chunk but is incomplete. The decision needs more bytes.
-    if (likely && !chunk->whole() && !ended_) return;
-    if (likely && chunk->whole() && is_chunk(*chunk)) {
+    if (chunk && !chunk->whole() && !ended_) return;
+    if (chunk && chunk->whole() && is_chunk(*chunk)) {
+      if (!is_lost) report_damage("a record that contains no chunk", "a chunk");
+      found_size_ = chunk->size();
       state_ = State::records;
       return;
     }
-    if (!bytes.empty()) skip(1);
+    is_lost ? skip(1) : consume(1);
   }
+  if (!is_lost) state_ = State::records;
 }
 
 void McapReader::find_magic() {
   const std::string_view bytes = rest();
   // Exactly the magic must follow. One more byte would show that the file continues.
   if (bytes.size() <= mcap_magic.size() && !ended_) return;
-  if (bytes != mcap_magic) {
-    report(Severity::error, "the MCAP magic after the footer", "other bytes",
-           "these bytes are ignored");
+  if (bytes == mcap_magic) {
+    state_ = State::closed;
+    consume(bytes.size());
+    return;
   }
-  state_ = bytes == mcap_magic ? State::closed : State::bad_end;
-  consume(bytes.size());
+  const bool is_end = bytes.starts_with(mcap_magic);
+  report(Severity::error, "the MCAP magic after the footer", "other bytes",
+         is_end ? "the bytes after the magic are ignored"
+                : "what stands there is left out, up to the next whole chunk");
+  state_ = is_end ? State::bad_end : State::lost;
 }
 
 }  // namespace kinalign

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads an MCAP file from beginning to end. The caller passes pieces of the file, and the reader
 // returns records. Instead of a chunk, it returns the records in the chunk. Damaged parts are
-// skipped and reported, and reading continues at the next recognisable chunk. The file may be
-// truncated. The reader keeps the current record and chunk in memory, at most `most_record` bytes
-// each.
+// skipped and reported, and reading continues at the next recognisable chunk. No checksum covers
+// the opcode and the length of a record, so a chunk is recognised by its own sizes and checksum.
+// The file may be truncated. The reader keeps the current record and chunk in memory, at most
+// `most_record` bytes each.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -45,6 +46,8 @@ class McapReader {
   /// True if no chunk's checksum covers the last record. The record is in a truncated chunk, in a
   /// chunk without a checksum, or outside of chunks.
   bool unchecked() const { return in_truncated_chunk_ || uncovered_; }
+  /// True if the last record is not in a chunk.
+  bool outside_chunks() const { return chunk_.empty(); }
   /// True if the last record is in a chunk that the end of the file cuts off.
   bool in_truncated_chunk() const { return in_truncated_chunk_; }
   /// True if the checksum of the data section covers every message. The result is valid after the
@@ -59,9 +62,19 @@ class McapReader {
   const Findings& findings() const { return findings_; }
 
  private:
-  // start: before the magic. records: at a record. lost: searching for the next chunk.
-  // after_footer: before the magic at the end. closed, bad_end and foreign: finished.
-  enum class State : std::uint8_t { start, records, lost, after_footer, closed, bad_end, foreign };
+  // start: before the magic. records: at a record. surplus: in the bytes after the known fields of
+  // a record. lost: searching for the next chunk. after_footer: before the magic at the end.
+  // closed, bad_end and foreign: finished.
+  enum class State : std::uint8_t {
+    start,
+    records,
+    surplus,
+    lost,
+    after_footer,
+    closed,
+    bad_end,
+    foreign
+  };
   // The result of look(): too few bytes, a complete record, the truncated end of the file, or
   // skipped damage.
   enum class Look : std::uint8_t { nothing, whole, truncated, damaged };
@@ -69,7 +82,10 @@ class McapReader {
   std::optional<McapRecord> read_record();
   std::optional<McapRecord> next_in_chunk();
   std::optional<McapRecord> next_in_file();
-  bool take(McapOp op, std::string_view content, std::optional<McapRecord>& record);
+  bool take(McapOp op, std::string_view content, std::optional<McapRecord>& record,
+            std::size_t& surplus);
+  bool is_hidden_chunk(std::string_view whole);
+  void judge_surplus(McapOp op, std::size_t surplus);
   void start();
   bool open_chunk(std::string_view content);
   void end_in_record();
@@ -92,9 +108,11 @@ class McapReader {
   std::size_t taken_ = 0;     // bytes of buffer_ that were read
   std::uint64_t offset_ = 0;  // position of the next byte in the file
   std::uint64_t record_at_ = 0, record_size_ = 0;
-  std::uint32_t crc_ = 0;   // checksum of the data section, later of the summary
-  bool crc_counts_ = true;  // false after a skipped byte
-  std::string chunk_;       // records of the current chunk
+  std::uint64_t found_size_ = 0;   // content of the chunk that was found here, bytes; 0: none
+  std::uint64_t surplus_end_ = 0;  // in the state surplus: the position of the next record
+  std::uint32_t crc_ = 0;          // checksum of the data section, later of the summary
+  bool crc_counts_ = true;         // false after a skipped byte
+  std::string chunk_;              // records of the current chunk
   std::size_t chunk_taken_ = 0;
   bool in_truncated_chunk_ = false, uncovered_ = false;
   // all_checked_ and is_summary_damaged_ stay false until the record with the checksum is read.

@@ -87,19 +87,23 @@ void put_fields(std::string& out, const Record& record) {
 }
 
 template <class Record>
-std::optional<McapRecord> decoded(std::string_view content) {
+std::optional<McapRecord> decoded(std::string_view content, std::size_t& surplus) {
   LittleEndianReader from(octets(content));
   Record record;
   // Bytes after the known fields are allowed. Only missing fields are an error.
   take_fields(from, record);
-  if constexpr (std::is_same_v<Record, McapMessage>) record.data = text_of(from.rest());
+  surplus = from.left();
+  if constexpr (std::is_same_v<Record, McapMessage>) {
+    record.data = text_of(from.rest());
+    surplus = 0;
+  }
   if (!from.complete()) return std::nullopt;
   return record;
 }
 
 /// Decodes an attachment. The result is empty also if the checksum is wrong.
 template <>
-std::optional<McapRecord> decoded<McapAttachment>(std::string_view content) {
+std::optional<McapRecord> decoded<McapAttachment>(std::string_view content, std::size_t& surplus) {
   LittleEndianReader from(octets(content));
   McapAttachment attachment;
   take_fields(from, attachment);
@@ -107,6 +111,7 @@ std::optional<McapRecord> decoded<McapAttachment>(std::string_view content) {
   // The checksum covers all fields in front of it.
   const std::string_view covered = content.substr(0, content.size() - from.left());
   const auto crc = from.take<std::uint32_t>();
+  surplus = from.left();
   if (!from.complete() || (crc != 0 && crc != crc_of(covered))) return std::nullopt;
   return attachment;
 }
@@ -124,17 +129,20 @@ void record(std::string& out, McapOp op, Content content) {
 
 /// Decodes the type of record in the variant that has this opcode.
 template <class... Records>
-std::optional<McapRecord> decoded_as(McapOp op, std::string_view content,
+std::optional<McapRecord> decoded_as(McapOp op, std::string_view content, std::size_t& surplus,
                                      const std::variant<Records...>*) {
   std::optional<McapRecord> record;
-  ((Records::op == op ? void(record = decoded<Records>(content)) : void()), ...);
+  ((Records::op == op ? void(record = decoded<Records>(content, surplus)) : void()), ...);
   return record;
 }
 
 }  // namespace
 
-std::optional<McapRecord> decode_mcap_record(McapOp op, std::string_view content) {
-  return decoded_as(op, content, static_cast<const McapRecord*>(nullptr));
+std::optional<McapRecord> decode_mcap_record(McapOp op, std::string_view content,
+                                             std::size_t* surplus) {
+  std::size_t unused = 0;
+  return decoded_as(op, content, surplus != nullptr ? *surplus : unused,
+                    static_cast<const McapRecord*>(nullptr));
 }
 
 std::optional<McapRecordHead> decode_mcap_head(std::string_view bytes) {

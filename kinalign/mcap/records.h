@@ -192,8 +192,10 @@ using McapRecord =
 
 /// Decodes the content of a record. The result is empty if the fields do not fit, or if the variant
 /// does not include the opcode (chunk, message index, index page, or unknown). Texts and bytes in
-/// the result are copies, except the data of a message.
-std::optional<McapRecord> decode_mcap_record(McapOp op, std::string_view content);
+/// the result are copies, except the data of a message. `surplus` gets the number of bytes after
+/// the known fields.
+std::optional<McapRecord> decode_mcap_record(McapOp op, std::string_view content,
+                                             std::size_t* surplus = nullptr);
 
 /// The head of a chunk and its stored records. If the chunk is truncated, only the present records.
 struct McapChunkView {

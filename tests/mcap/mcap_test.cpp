@@ -10,6 +10,7 @@
 #include <doctest/doctest.h>
 
 #include <ctime>
+#include <numeric>
 
 namespace kinalign {
 
@@ -64,6 +65,53 @@ std::vector<T> records_of(const ReadMcap& read) {
     if (const auto* one = std::get_if<T>(&record)) found.push_back(*one);
   }
   return found;
+}
+
+/// A file of 20 messages with at least one record of each kind that recordings contain.
+std::string file_of_all_records(McapCompression compression, bool finish) {
+  MemoryFile file;
+  McapWriter writer(file.store());
+  (void)writer.begin({"kinalign", "test"});
+  (void)writer.write(McapMetadata{"kinalign.recording", {{"subject", "03"}}});
+  (void)writer.write(McapAttachment{0, 0, "lab.toml", "", "a = 1\n"});
+  for (std::uint32_t k = 0; k < 20;) {
+    McapChunkContent content;
+    for (const std::uint32_t end = k + 5; k < end; ++k) add(content, nth_message(k));
+    (void)writer.write(store(content, compression));
+  }
+  // The writer begins a page only after many chunks, so this one comes from here.
+  if (!finish) append_mcap_record(file.bytes, McapOp::index_page, std::string(100, '\6'));
+  if (finish) (void)writer.finish();
+  return file.bytes;
+}
+
+/// The positions of the records outside of chunks.
+std::vector<std::size_t> record_heads(const std::string& bytes) {
+  std::vector<std::size_t> heads;
+  for (std::size_t at = mcap_magic.size(); bytes.size() - at > mcap_magic.size();) {
+    heads.push_back(at);
+    at += mcap_record_head + decode_mcap_head(std::string_view(bytes).substr(at))->length;
+  }
+  return heads;
+}
+
+std::string with_flipped_bit(std::string bytes, std::size_t bit) {
+  bytes[bit / 8] = static_cast<char>(bytes[bit / 8] ^ (1 << bit % 8));
+  return bytes;
+}
+
+/// The numbers of the messages that a checksum covers, in the order of reading.
+std::vector<std::uint32_t> checked_numbers(const ReadMcap& read) {
+  std::vector<std::uint32_t> numbers;
+  for (const OwnedMessage& m : read.messages) {
+    if (!m.unchecked) numbers.push_back(m.message.sequence);
+  }
+  return numbers;
+}
+std::vector<std::uint32_t> first_numbers(std::uint32_t count) {
+  std::vector<std::uint32_t> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), 0U);
+  return numbers;
 }
 
 }  // namespace
@@ -222,6 +270,64 @@ TEST_CASE("a chunk with a flipped bit is left out, those behind it are read") {
       CHECK(m.data == nth_message(m.message.sequence).data);
     }
   }
+}
+
+TEST_CASE("a flipped bit in the opcode or length of any record costs no intact chunk") {
+  for (const auto compression : {McapCompression::none, McapCompression::zstd}) {
+    for (const bool finish : {true, false}) {
+      CAPTURE(finish);
+      const std::string whole = file_of_all_records(compression, finish);
+      CHECK(read_mcap(whole).findings.empty());
+      for (const std::size_t at : record_heads(whole)) {
+        const auto op = static_cast<McapOp>(whole[at]);
+        for (std::size_t bit = 0; bit < 8 * mcap_record_head; ++bit) {
+          CAPTURE(at);
+          CAPTURE(static_cast<int>(op));
+          CAPTURE(bit);
+          const std::string flipped = with_flipped_bit(whole, 8 * at + bit);
+          const ReadMcap read = read_mcap(flipped, 997);
+          CHECK(checked_numbers(read) == first_numbers(20));
+          // In a truncated file no checksum covers the opcodes of the other records.
+          const bool is_seen = finish || op == McapOp::chunk || bit >= 8;
+          CHECK((!read.findings.empty() || !is_seen));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("a chunk that a flipped bit turns into a footer does not end the reading") {
+  std::vector<std::size_t> ends;
+  std::string bytes = mcap_file(30, 10, McapCompression::zstd, &ends);
+  bytes[ends[0]] = static_cast<char>(McapOp::footer);
+  const ReadMcap read = read_mcap(bytes);
+  CHECK(checked_numbers(read) == first_numbers(30));
+  CHECK(read.closed);
+  CHECK(!read.findings.empty());
+}
+
+TEST_CASE("a footer that the magic does not follow is no end") {
+  std::string bytes = mcap_file(10, 10, McapCompression::zstd, nullptr, false);
+  append_mcap(bytes, McapFooter{});
+  McapChunkContent content;
+  for (std::uint32_t k = 10; k < 20; ++k) add(content, nth_message(k));
+  const ReadMcap read = read_mcap(bytes + store(content, McapCompression::zstd).bytes);
+  CHECK(checked_numbers(read) == first_numbers(20));
+  CHECK(!read.closed);
+  CHECK(!read.findings.empty());
+}
+
+TEST_CASE("an attachment with a recording in it is no damage, nor is a record of a program's own") {
+  std::string bytes = mcap_file(20, 10, McapCompression::none, nullptr, false);
+  append_mcap(bytes,
+              McapAttachment{0, 0, "inner.mcap", "", mcap_file(40, 10, McapCompression::none)});
+  append_mcap_record(bytes, static_cast<McapOp>(0x90), std::string(3000, '\6'));
+  McapChunkContent content;
+  for (std::uint32_t k = 20; k < 30; ++k) add(content, nth_message(k));
+  bytes += store(content, McapCompression::none).bytes;
+  const ReadMcap read = read_mcap(bytes, 100);
+  CHECK(checked_numbers(read) == first_numbers(30));
+  CHECK(read.findings.empty());
 }
 
 TEST_CASE("zeros at the end, as a power cut leaves them, end the reading") {
