@@ -34,8 +34,7 @@ void NoitomReceiver::feed_datagram(std::span<const std::uint8_t> datagram, HostT
       return;
     }
   }
-  // The cut frame is complete only if the next header continues the frame numbers.
-  if (cut_) settle(!cut_->last_piece.empty() && header && comes_before(header->frame), out);
+  if (cut_) settle(header ? fate_before(header->frame) : Fate::damaged, out);
   decoder_.feed(datagram, out);
   // No sender splits a frame within its header.
   if (decoder_.waits_within_header()) decoder_.give_up(out);
@@ -43,7 +42,7 @@ void NoitomReceiver::feed_datagram(std::span<const std::uint8_t> datagram, HostT
 }
 
 void NoitomReceiver::finish(std::vector<NoitomArrival>& out) {
-  if (has_last()) settle(true, out);
+  if (has_last()) settle(Fate::whole, out);
 }
 
 bool NoitomReceiver::arrived_together() const {
@@ -58,11 +57,20 @@ bool NoitomReceiver::comes_before(const NoitomFrame& next) const {
   return *next.frame_index - *head.index == (next.avatar > head.avatar ? 0U : 1U);
 }
 
-// Outputs the cut frame or drops it. After a fault the next cut frame is dropped, too, because a
+// The cut frame is complete only if the next header continues the frame numbers. If its pieces
+// arrived together, none of them is delayed: the sender has left the next number out, or the next
+// header is lost.
+NoitomReceiver::Fate NoitomReceiver::fate_before(const NoitomFrame& next) const {
+  if (!cut_->last_piece.empty() && comes_before(next)) return Fate::whole;
+  return arrived_together() ? Fate::unproven : Fate::damaged;
+}
+
+// Outputs the cut frame or drops it. After damage the next cut frame is dropped, too, because a
 // delayed piece of the first frame may have replaced one of its own pieces.
-void NoitomReceiver::settle(bool is_whole, std::vector<NoitomArrival>& out) {
-  const bool is_after_fault = std::exchange(after_fault_, !is_whole);
-  if (is_whole && !is_after_fault) {
+void NoitomReceiver::settle(Fate fate, std::vector<NoitomArrival>& out) {
+  const bool is_after_fault = after_fault_;
+  after_fault_ = fate == Fate::damaged || (fate == Fate::unproven && is_after_fault);
+  if (fate == Fate::whole && !is_after_fault) {
     const std::size_t before = out.size();
     decoder_.feed(cut_->last_piece, out);
     for (std::size_t i = before; i < out.size(); ++i) out[i].arrival = cut_->ended;

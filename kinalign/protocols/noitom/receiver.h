@@ -49,12 +49,15 @@ class NoitomReceiver {
   /// number.
   bool arrived_together() const;
   bool comes_before(const NoitomFrame& next) const;
+  /// unproven: the frame may be complete, but the next header does not show it.
+  enum class Fate : std::uint8_t { whole, unproven, damaged };
+  Fate fate_before(const NoitomFrame& next) const;
   /// Ends the cut frame: outputs it or counts it as incomplete.
-  void settle(bool is_whole, std::vector<NoitomArrival>& out);
+  void settle(Fate fate, std::vector<NoitomArrival>& out);
 
   NoitomDecoder decoder_;
   std::optional<CutFrame> cut_;  // waits for its last piece, then for the next header
-  bool after_fault_ = false;     // the cut frame before this one was dropped
+  bool after_fault_ = false;     // the cut frame before this one was damaged
   bool gave_cut_frames_ = false;
 };
 
