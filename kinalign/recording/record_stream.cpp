@@ -137,10 +137,22 @@ bool RecordStream::is_first(const std::string& name) {
   return names_.try_emplace(name, *taken_).first->second == *taken_;
 }
 
+/// True if the last message can't be one. The recorder writes all messages into chunks, and a live
+/// stream has none. A message outside of the chunks is therefore another record whose opcode is
+/// damaged, and its number must not replace the number of a real message.
+bool RecordStream::is_outside(Part& part) {
+  if (!part.reader.unchecked()) part.has_chunks = true;
+  return part.is_ours && part.has_chunks && part.reader.outside_chunks();
+}
+
 /// Damaged bytes of a truncated chunk may look like a message with any number. Such a message is
 /// accepted only if its number is at most most_ahead above the last number of its channel.
 bool RecordStream::passes(Part& part, const McapMessage& message) {
   constexpr std::uint32_t most_ahead = 1024;  // a chunk contains fewer messages of a device
+  if (is_outside(part)) {
+    ++part.outside;
+    return false;
+  }
   const auto last = numbers_.last(message.channel);
   // Files of other programs are not checked by numbers, because their numbers may repeat.
   if (part.is_ours && numbers_.has(message)) {
@@ -206,12 +218,18 @@ Findings RecordStream::findings() const {
       finding.what.file = path;
       findings.push_back(std::move(finding));
     }
-    if (part.impossible == 0) continue;
-    findings.push_back(
-        {Severity::error,
-         Error{path, 0, "plausible message numbers in the truncated chunk",
-               std::to_string(part.impossible) + " messages with impossible numbers"},
-         "these messages have no checksum and are damaged, so they are left out", ""});
+    if (part.impossible > 0) {
+      findings.push_back(
+          {Severity::error,
+           Error{path, 0, "plausible message numbers in the truncated chunk",
+                 std::to_string(part.impossible) + " messages with impossible numbers"},
+           "these messages have no checksum and are damaged, so they are left out", ""});
+    }
+    if (part.outside == 0) continue;
+    findings.push_back({Severity::error,
+                        Error{path, 0, "all messages in chunks",
+                              std::to_string(part.outside) + " outside of the chunks"},
+                        "these are other records with a damaged opcode, so they are left out", ""});
   }
   if (in_order_) return findings;
   findings.push_back(

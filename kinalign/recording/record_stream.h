@@ -73,6 +73,8 @@ class RecordStream {
     std::uint32_t place = 0;                  // index of `head` among the messages of the chunk
     std::uint64_t passed = 0, unchecked = 0;  // returned messages; those of them without a checksum
     std::uint64_t impossible = 0;             // messages left out because of their number
+    bool has_chunks = false;                  // a message of a chunk with a checksum was read
+    std::uint64_t outside = 0;                // messages left out because no chunk contains them
     std::uint64_t counted = 0;                // messages by the statistics in the file
   };
   Result<void> learn(FileSystem& files, const RecordingParts& parts);
@@ -81,6 +83,7 @@ class RecordStream {
   bool waits(const Part& part, const McapMessage& message) const;
   bool passes(Part& part);
   bool passes(Part& part, const McapMessage& message);
+  static bool is_outside(Part& part);
   bool is_first(const std::string& name);
   bool is_last_part() const { return *taken_ + 1 == parts_.size(); }
 

@@ -43,7 +43,7 @@ std::string part_with(int part, const std::vector<Sent>& messages) {
 
 /// The sequence numbers of each channel in the order in which they are read.
 std::map<std::uint16_t, std::vector<std::uint32_t>> numbers_in(
-    const std::vector<std::string>& bytes) {
+    const std::vector<std::string>& bytes, Findings* findings = nullptr) {
   const FreshFolder folder;
   PosixFiles files;
   std::vector<std::string> paths;
@@ -56,7 +56,10 @@ std::map<std::uint16_t, std::vector<std::uint32_t>> numbers_in(
   for (;;) {
     const auto record = stream->next();
     REQUIRE(record);
-    if (*record == nullptr) return found;
+    if (*record == nullptr) {
+      if (findings != nullptr) *findings = stream->findings();
+      return found;
+    }
     const auto* message = std::get_if<McapMessage>(*record);
     if (message != nullptr) found[message->channel].push_back(message->sequence);
   }
@@ -76,6 +79,33 @@ TEST_CASE("channels stay in order where log times do not rise within a file") {
     CHECK(found[channel].size() == 50);
     CHECK(std::is_sorted(found[channel].begin(), found[channel].end()));
   }
+}
+
+TEST_CASE("a message index that a flipped bit turns into a message replaces no real message") {
+  // The index of one message states 16 bytes. As a message, these are the number 16.
+  MemoryFile file;
+  McapWriter writer(file.store());
+  REQUIRE(writer.begin({"kinalign", "test"}));
+  REQUIRE(writer.write(to_metadata({"", "", "lab", "a.mcap", 1, {}})));
+  std::size_t index = 0;
+  for (std::uint32_t k = 0; k < 20; ++k) {
+    McapChunkContent content;
+    OwnedMessage message = nth_message(0);
+    message.message.sequence = k;
+    add(content, message);
+    const McapStoredChunk chunk = store(content, McapCompression::none);
+    if (k == 5) index = file.bytes.size() + chunk.index.message_index_offsets.begin()->second;
+    REQUIRE(writer.write(chunk));
+  }
+  REQUIRE(file.bytes[index] == static_cast<char>(McapOp::message_index));
+  file.bytes[index] = static_cast<char>(McapOp::message);
+  Findings findings;
+  const auto found = numbers_in({file.bytes}, &findings);
+  REQUIRE(found.contains(1));
+  CHECK(found.at(1).size() == 20);
+  CHECK(std::is_sorted(found.at(1).begin(), found.at(1).end()));
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].what.found == "1 outside of the chunks");
 }
 
 TEST_CASE("each message of all parts is read once, and each channel in order") {
