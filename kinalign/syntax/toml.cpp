@@ -129,16 +129,34 @@ std::string toml_text(const std::map<std::string, One>& values) {
   return "{ " + text + " }";
 }
 
+/// The line of the first key with more parts than longest_path allows; 0 if there is none. toml++
+/// recurses once per part, so such a key must not reach it.
+std::int64_t line_of_deep_key(std::string_view text) {
+  std::int64_t line = 1;
+  std::size_t dots = 0;
+  for (const char c : text) {
+    if (c == '.' && ++dots > longest_path) return line;
+    if (c == '\n') ++line;
+    if (std::string_view("=,{}\n").find(c) != std::string_view::npos) dots = 0;
+  }
+  return 0;
+}
+
+Failure too_long(std::string_view name, std::int64_t line) {
+  return Failure(Error{std::string(name), line, "keys of at most 250 bytes with their tables",
+                       "a longer key"});
+}
+
 }  // namespace
 
 Result<void> read_toml(std::string_view text, std::string_view name,
                        const std::function<Result<void>(const Value& top)>& read) {
+  if (const std::int64_t line = line_of_deep_key(text); line > 0) return too_long(name, line);
   // toml++ throws exceptions. They are caught here and become errors with a line.
   try {
     const toml::table top = toml::parse(text, name);
     if (const toml::node* node = beyond_limit(top, 0)) {
-      return Failure(Error{std::string(name), static_cast<std::int64_t>(node->source().begin.line),
-                           "keys of at most 250 bytes with their tables", "a longer key"});
+      return too_long(name, static_cast<std::int64_t>(node->source().begin.line));
     }
     return read(value_of(top, "", "")).map_error([&](Error error) {
       error.file = std::string(name);

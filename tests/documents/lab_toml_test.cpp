@@ -69,6 +69,20 @@ TEST_CASE("a key of many parts is refused before every part is copied with its p
   CHECK(error_of(std::string(251, 'k') + " = [1, 2]\n") == refused);
 }
 
+TEST_CASE("a key of 60,000 parts is refused and does not use up the stack") {
+  std::string deep = "a";
+  for (int part = 1; part < 60'000; ++part) deep += ".a";
+  const std::string refused =
+      "expected keys of at most 250 bytes with their tables, found a longer key";
+  CHECK(error_of(deep + " = 1\n") == "labs/lab.toml:1: " + refused);
+  CHECK(error_of("\n[" + deep + "]\n") == "labs/lab.toml:2: " + refused);
+  CHECK(error_of("a = { " + deep + " = 1 }\n") == "labs/lab.toml:1: " + refused);
+}
+
+TEST_CASE("dots in a text are no parts of a key") {
+  CHECK(read_devices("[align]\n# " + std::string(200, '.') + "\ngap_ms = 3\n", "kinalign.toml"));
+}
+
 TEST_CASE("what is wrong with a device is told with its line and the nearest known name") {
   CHECK(error_of(mocap + "prot = 1\n") ==
         "labs/lab.toml:4: expected a key of [device.mocap] (nearest: port), found \"prot\"");
