@@ -60,7 +60,8 @@ class NumberedFrames {
 
   /// The number of frames of other types or bodies than selected.
   std::uint64_t others() const { return others_; }
-  /// Findings about the bytes. If several connections have the same finding, it is returned once.
+  /// Findings about the bytes, and about duplicates. If several connections have the same finding,
+  /// it is returned once.
   Findings findings(const std::string& file) const {
     Findings all;
     for (const auto& [id, channel] : channels_) {
@@ -68,6 +69,14 @@ class NumberedFrames {
         const auto same = [&one](const Finding& f) { return f.what.found == one.what.found; };
         if (std::none_of(all.begin(), all.end(), same)) all.push_back(std::move(one));
       }
+    }
+    // A sender that restarts less than 1024 numbers back also repeats numbers (SequenceCount).
+    if (duplicates_ > 0) {
+      all.push_back({Severity::note,
+                     Error{file, 0, "each frame number once",
+                           std::to_string(duplicates_) + " frames that repeat an earlier number"},
+                     "they were left out: the network duplicated them, or the sender restarted",
+                     ""});
     }
     return all;
   }
@@ -102,7 +111,10 @@ class NumberedFrames {
         ++others_;
         continue;
       }
-      if (one.order == Order::duplicate) continue;
+      if (one.order == Order::duplicate) {
+        ++duplicates_;
+        continue;
+      }
       // If the source sends no numbers, frames of a connection are counted instead, because a
       // connection loses no frames.
       std::optional<SequencePlace> place = one.place;
@@ -119,7 +131,7 @@ class NumberedFrames {
   }
 
   std::optional<std::uint64_t> body_;
-  std::uint64_t others_ = 0;
+  std::uint64_t others_ = 0, duplicates_ = 0;
   std::map<std::uint16_t, Channel> channels_;
   std::vector<Arrival> arrivals_;
 };

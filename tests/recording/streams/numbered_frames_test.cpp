@@ -7,7 +7,8 @@ using namespace kinalign;
 
 namespace {
 
-/// Frames of three letters: a body, a digit of the number, and an end.
+/// Frames of three letters: a body, a digit of the number, and an end. The end "d" marks a
+/// duplicate.
 struct Letters {
   struct Arrival {
     std::string frame;
@@ -20,7 +21,9 @@ struct Letters {
     void feed(std::span<const std::uint8_t> bytes, std::vector<Arrival>& out) {
       held += text_of(bytes);
       for (; held.size() >= 3; held.erase(0, 3))
-        out.push_back({held.substr(0, 3), {0, held[1] - '0'}});
+        out.push_back({held.substr(0, 3),
+                       {0, held[1] - '0'},
+                       held[2] == 'd' ? Order::duplicate : Order::newest});
     }
     Findings findings(const std::string& file) const {
       return {{Severity::note, Error{file, 0, "letters", "letters"}, "", ""}};
@@ -53,4 +56,16 @@ TEST_CASE("two connections that speak in turn have a decoder and a count each") 
   CHECK(lives.begin()->second == std::vector<std::int64_t>{1, 2, 3});
   CHECK(lives.rbegin()->second == std::vector<std::int64_t>{5, 6});
   CHECK(frames.findings("take.mcap").size() == 1);  // the same finding for both senders
+}
+
+TEST_CASE("frames that repeat a number are left out and counted") {
+  const RawChannel raw{"mocap", "letters", "udp", "10.0.0.3:7012", "", ""};
+  NumberedFrames<Letters> frames(std::nullopt);
+  std::vector<NumberedFrames<Letters>::Placed> out;
+  frames.take({&raw, 1, HostTime{}, "a1.a2.a1da2da3."}, out);
+  CHECK(out.size() == 3);
+  const Findings findings = frames.findings("take.mcap");
+  REQUIRE(findings.size() == 2);
+  CHECK(to_string(findings[1].what) ==
+        "take.mcap: expected each frame number once, found 2 frames that repeat an earlier number");
 }
