@@ -171,7 +171,7 @@ class RecordingJudge {
     if (is_of_marks(port) && counts.refused > 0) {
       out_.add(Severity::note, "only marks at the port of " + port.stream,
                grouped(counts.refused) + " datagrams that are not marks",
-               "record reported the reason, and answered the sender with it",
+               "record reported the first one of each reason",
                "docs/formats/marks.md says how a mark is sent");
       counts.refused = 0;
     }
@@ -220,7 +220,7 @@ class RecordingJudge {
         out_.add(Severity::warning, "frames of " + protocol + " from " + name_of(one, survey_),
                  grouped(counts.messages) + " messages without such a frame",
                  "this data can't be aligned as " + protocol,
-                 "check the port and the protocol that the device sends to");
+                 std::string(advice_without_frames(counts)));
       }
       const auto known = find_recorded_protocol(protocol);
       // Frames are counted only for protocols that are decoded.

@@ -122,6 +122,16 @@ TEST_CASE("a stream that can not become rows is found") {
   CHECK(judged(survey).empty());
 }
 
+TEST_CASE("a sender whose frames were all refused is not said to use another protocol") {
+  RecordingSurvey survey = kinect_survey(1000, 1000, 0);
+  survey.channels[0].channel.message_encoding = "noitom";
+  const auto repair = [&] { return judge_survey("a.mcap", survey).at(0).repair; };
+  CHECK(repair() == "check the port and the protocol that the device sends to");
+  survey.senders[0].counts.refused = 498;
+  CHECK(repair() ==
+        "record reports why frames were refused; if they arrive in several datagrams, use TCP");
+}
+
 TEST_CASE("a Kinect's frames that were sent again, or too late, are frames of a Kinect") {
   RecordingSurvey survey = kinect_survey(50, 50, 0);
   survey.channels[0].channel.message_encoding = "kinect";

@@ -67,12 +67,21 @@ struct LearnedDevice {
 };
 
 /// The error for a device without rows. `what`: the content that rows need. `others`: the number of
-/// messages of this protocol with other content.
+/// messages of this protocol with other content. `refused`: findings about frames that the decoder
+/// refused.
 inline Error no_rows_error(std::string_view what, const std::string& file,
-                           const LearnedDevice& learned, std::uint64_t others = 0) {
+                           const LearnedDevice& learned, std::uint64_t others = 0,
+                           const Findings& refused = {}) {
   const std::string expected = std::string(what) + " in stream " + shown(learned.channel.stream);
   if (others > 0) {
     return {file, 0, expected, std::to_string(others) + " messages, all of other types or bodies",
+            ErrorKind::no_rows_in_recording};
+  }
+  // The decoder knows why it refused all frames, so the port and the protocol are not the fault.
+  if (!refused.empty()) {
+    const Finding& first = refused.front();
+    const std::string advice = first.repair.empty() ? first.meaning : first.repair;
+    return {file, 0, expected + " (" + advice + ")", "only refused ones: " + first.what.found,
             ErrorKind::no_rows_in_recording};
   }
   return {file, 0,

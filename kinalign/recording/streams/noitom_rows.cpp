@@ -66,8 +66,8 @@ class NoitomListener final : public DeviceListener {
     keys_.add(placed_, noitom_shape);
     append(learned.findings, frames_.findings(request.file.path));
     if (keys_.empty()) {
-      return Failure(
-          no_rows_error(NoitomSource::what, request.file.path, learned, frames_.others()));
+      return Failure(no_rows_error(NoitomSource::what, request.file.path, learned, frames_.others(),
+                                   frames_.findings(request.file.path)));
     }
     // A recording without a BVH head fails here, before the later passes need the head.
     const BvhHierarchy hierarchy = KA_TRY(hierarchy_of(learned, request.file.path));

@@ -46,7 +46,8 @@ class XsensListener final : public DeviceListener {
   Result<void> finish(const DeviceRequest& request, LearnedDevice& learned) override {
     append(learned.findings, frames_.findings(request.file.path));
     if (keys_.empty()) {
-      return Failure(no_rows_error(meaning<Items>, request.file.path, learned, frames_.others()));
+      return Failure(no_rows_error(meaning<Items>, request.file.path, learned, frames_.others(),
+                                   frames_.findings(request.file.path)));
     }
     count_clock(keys_.counted(), 0.0, request, learned);
     return {};

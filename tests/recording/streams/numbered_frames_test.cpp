@@ -69,3 +69,15 @@ TEST_CASE("frames that repeat a number are left out and counted") {
   CHECK(to_string(findings[1].what) ==
         "take.mcap: expected each frame number once, found 2 frames that repeat an earlier number");
 }
+
+TEST_CASE("where all frames were refused the reason is named, not the port") {
+  LearnedDevice learned;
+  learned.channel.stream = "mocap";
+  const Finding refused{Severity::note,
+                        Error{"a.mcap", 0, "whole frames", "incomplete (238 times)"},
+                        "frames were dropped", "use TCP"};
+  CHECK(
+      to_string(no_rows_error("frames", "a.mcap", learned, 0, {refused})) ==
+      "a.mcap: expected frames in stream mocap (use TCP), found only refused ones: incomplete (238 "
+      "times)");
+}
