@@ -56,6 +56,16 @@ std::string mark_text(const RecordedMark& mark, double at_s) {
   return mark_words(kinalign::name_of(mark.mark.kind), mark.mark.text, at_s, mark.source) + latency;
 }
 
+/// The number of findings about damage and missing messages. `check` has more findings.
+std::size_t faults_of(const RecordingSurvey& survey) {
+  const auto faults =
+      std::count_if(survey.findings.begin(), survey.findings.end(),
+                    [](const Finding& finding) { return finding.severity >= Severity::warning; });
+  const auto gaps = std::count_if(survey.channels.begin(), survey.channels.end(),
+                                  [](const ChannelSurvey& one) { return one.missing > 0; });
+  return static_cast<std::size_t>(faults + gaps);
+}
+
 /// The text about a recording. The times of marks count from its first message.
 std::string text_of(const std::string& path, const RecordingSurvey& survey,
                     const RecordingParts& parts) {
@@ -97,6 +107,7 @@ std::string text_of(const std::string& path, const RecordingSurvey& survey,
   }
   // A recording may have thousands of marks; only the first ones are shown.
   if (survey.more_marks > 0) line("marks", grouped(survey.more_marks) + " more, not shown");
+  text += findings_line(faults_of(survey), path);
   return text;
 }
 
