@@ -77,7 +77,7 @@ Result<int> run(Recover& o, Call& call) {
                     grouped(done.unchecked));
   }
   if (done.twice > 0)
-    text += fmt::format("  {} were in several files and were copied once\n", grouped(done.twice));
+    text += fmt::format("  {} further copies of messages were left out\n", grouped(done.twice));
   if (done.nameless > 0) {
     text += fmt::format("  {} left out: the definition of their channel is lost\n",
                         grouped(done.nameless));
