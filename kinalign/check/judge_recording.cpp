@@ -220,7 +220,7 @@ class RecordingJudge {
         out_.add(Severity::warning, "frames of " + protocol + " from " + name_of(one, survey_),
                  grouped(counts.messages) + " messages without such a frame",
                  "this data can't be aligned as " + protocol,
-                 std::string(advice_without_frames(counts)));
+                 std::string(advice_without_frames(protocol)));
       }
       const auto known = find_recorded_protocol(protocol);
       // Frames are counted only for protocols that are decoded.

@@ -33,11 +33,12 @@ constexpr bool are_many(std::uint64_t datagrams) { return datagrams >= 20; }
 /// True if the sender seems to use another protocol: kinalign decodes the protocol, and many
 /// messages contained no frame, not even a late or duplicate frame.
 bool speaks_another_protocol(std::string_view recorded_protocol, const SenderCounts& counts);
-/// Advice to the user of such a sender. If frames were refused, the protocol may be right.
-constexpr std::string_view advice_without_frames(const SenderCounts& counts) {
-  return counts.refused == 0 ? "check the port and the protocol that the device sends to"
-                             : "record reports why frames were refused; if they arrive in several "
-                               "datagrams, use TCP";
+/// Advice to the user of such a sender. Noitom's frames are also refused if they are incomplete.
+constexpr std::string_view advice_without_frames(std::string_view recorded_protocol) {
+  return recorded_protocol == "noitom"
+             ? "check the port and the protocol that the device sends to; if its frames arrive in "
+               "several datagrams, use TCP"
+             : "check the port and the protocol that the device sends to";
 }
 /// One message of the channel /counts: a sender and its counts so far in the take. Stream, address
 /// and node identify the sender.

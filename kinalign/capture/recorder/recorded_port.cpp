@@ -226,7 +226,7 @@ void RecordedPort::find_faults(const Source& source) {
                         Error{name, 0, "frames of " + device_.protocol,
                               std::to_string(counts.messages) + " messages without such a frame"},
                         "all data is recorded, but it can't be aligned as " + device_.protocol,
-                        std::string(advice_without_frames(counts))});
+                        std::string(advice_without_frames(device_.protocol))});
   }
   for (Finding& finding : findings) findings_.add(host, std::move(finding));
 }
