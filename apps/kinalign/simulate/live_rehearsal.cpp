@@ -162,8 +162,8 @@ TrueRecording live_truth(const Rehearsal& rehearsal, const Motion& motion, const
   for (std::size_t n = 0; n < truth.nodes.size(); ++n) {
     const SimulatedNode& node = rehearsal.nodes[n];
     if (clockless_hz) {
-      // A node without a counter has no clock. It sends each sample in one request. The stamp is the
-      // number of the request, counted from 0, times the sample period.
+      // A node without a counter has no clock. It sends each sample in one request. The stamp is
+      // the number of the request, counted from 0, times the sample period.
       truth.nodes[n].clock = {};
       for (std::size_t i = 0; i < node.truth.times.size(); ++i) {
         truth.nodes[n].clock.stamps_ns.push_back(
