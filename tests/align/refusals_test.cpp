@@ -167,9 +167,10 @@ TEST_CASE("joints that a manifest names are there on both sides") {
 TEST_CASE("a fit needs three named joints, and three places that stand on no line") {
   SpaceOptions space = by("fit");
   space.joints = {{"Head", "Head"}, {"HandLeft", "HandLeft"}};
-  CHECK(fault_of_space(space) ==
-        "expected at least three pairs of joints for a fit (joints = { ... }), found 2 (HandLeft on "
-        "HandLeft, Head on Head)");
+  CHECK(
+      fault_of_space(space) ==
+      "expected at least three pairs of joints for a fit (joints = { ... }), found 2 (HandLeft on "
+      "HandLeft, Head on Head)");
   const auto on_a_line = [](std::size_t j, double) {
     return Vec3(static_cast<double>(j), 2.0, -static_cast<double>(j));
   };
